@@ -1,0 +1,162 @@
+"""A run's configuration: every size of a run, read from a TOML file and checked."""
+
+from __future__ import annotations
+
+import hashlib
+import tomllib
+from pathlib import Path
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from disorder_landscape.arguments import ArgumentError
+from disorder_landscape.physics import disorder
+from disorder_landscape.physics.parameters import (
+    ALPHA_RANGE,
+    B_MAX,
+    BIAS,
+    MU_MAX,
+    SITES,
+    TEMPERATURE,
+    FloatArray,
+)
+
+Positive = Annotated[int, Field(ge=1)]
+LearningRate = Annotated[float, Field(gt=0, le=1)]
+
+
+class _Section(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class DatasetConfig(_Section):
+    """What one dataset is: disorder model, (μ, B, V_bias) grid, number of realizations."""
+
+    realizations: Positive
+    """How many wires."""
+    components: Positive = 5
+    """N_dis, the disorder components c₁ … c_n that are kept."""
+    alpha_range: tuple[float, float] = ALPHA_RANGE
+    """α is uniform in this range in meV nm; two equal numbers fix it, and it is no label then."""
+    sites: Annotated[int, Field(ge=2, le=100_000)] = SITES
+    correlation_length: Annotated[float, Field(gt=0, le=100)] = disorder.CORRELATION_LENGTH
+    """ℓ in sites."""
+    amplitude: Literal["sum", "double", "unit-variance"] = "sum"
+    """Reading of "1.5 meV", see physics.disorder."""
+    mu_points: Positive = 15
+    mu_max: Annotated[float, Field(ge=0, le=10)] = MU_MAX
+    """The grid of μ goes from 0 to this, in meV."""
+    B_points: Positive = 15
+    B_max: Annotated[float, Field(ge=0, le=10)] = B_MAX
+    """The grid of B goes from 0 to this, in T."""
+    bias: tuple[float, ...] = BIAS
+    """V_bias in meV."""
+    temperature: Annotated[float, Field(ge=0, le=10)] = TEMPERATURE
+    """In K."""
+    seed: Annotated[int, Field(ge=0)] = 0
+    shard_size: Positive = 50
+    """Realizations per file."""
+
+    @model_validator(mode="after")
+    def _consistent(self) -> DatasetConfig:
+        low, high = self.alpha_range
+        if not 0 <= low <= high:
+            raise ValueError("alpha_range must be two increasing numbers ≥ 0")
+        if self.components >= self.sites:
+            raise ValueError("components must be fewer than sites")
+        if list(self.bias) != sorted(set(self.bias)) or not self.bias:
+            raise ValueError("bias must be a non-empty increasing list")
+        return self
+
+    @property
+    def mu(self) -> FloatArray:
+        """Grid of chemical potentials in meV, shape (mu,)."""
+        return np.linspace(0.0, self.mu_max, self.mu_points)
+
+    @property
+    def B(self) -> FloatArray:
+        """Grid of magnetic fields in T, shape (B,)."""
+        return np.linspace(0.0, self.B_max, self.B_points)
+
+    @property
+    def alpha_is_label(self) -> bool:
+        """Whether α varies, and so is one of the labels Y."""
+        return self.alpha_range[0] < self.alpha_range[1]
+
+    @property
+    def hash(self) -> str:
+        """Hash of everything that decides the content of a realization (not how many there are)."""
+        content = self.model_dump_json(exclude={"realizations", "shard_size"})
+        return hashlib.sha256(content.encode()).hexdigest()[:16]
+
+
+class NetworkConfig(_Section):
+    """The size of the paper's network."""
+
+    width_fraction: Annotated[float, Field(gt=0, le=4)] = 1.0
+    """Multiplies the filters of every convolution (Fig. S2); the paper's network is 1.0."""
+
+
+class TrainingConfig(_Section):
+    """How the network is trained (S-II.2)."""
+
+    epochs: tuple[Positive, ...] = (15, 15, 10, 5)
+    """Epochs of each set; the learning rate is divided by 10 from set to set."""
+    learning_rate: LearningRate = 1e-4
+    """Learning rate of the first set."""
+    batch_size: Positive = 32
+    test_fraction: Annotated[float, Field(gt=0, lt=1)] = 0.1
+    """The last realizations are the test set."""
+    precision: Literal["float32", "mixed_bfloat16"] = "float32"
+    compress_inputs: bool = False
+    """Feed asinh(G/s), standardised per pixel, instead of G."""
+    mirror: bool = False
+    """Train on mirrored wires too, and average predictions over the mirror."""
+    seed: Annotated[int, Field(ge=0)] = 0
+
+
+class FiguresConfig(_Section):
+    """Resolution of the maps in the figures."""
+
+    mu_points: Positive = 61
+    B_points: Positive = 81
+    bias_points: Positive = 81
+    realizations: tuple[Annotated[int, Field(ge=0)], ...] = (0, 1, 2, 3)
+    """Which of the test realizations are drawn."""
+
+
+class Config(_Section):
+    """One run, from dataset to figures."""
+
+    dataset: DatasetConfig
+    network: NetworkConfig = NetworkConfig()
+    training: TrainingConfig = TrainingConfig()
+    figures: FiguresConfig = FiguresConfig()
+
+
+def load_config(path: str | Path) -> Config:
+    """Read and check a TOML file.
+
+    Raises
+    ------
+    ArgumentError
+        If the file cannot be read, is not TOML, or has an unknown, missing or invalid key.
+    """
+    try:
+        with open(path, "rb") as file:
+            return Config.model_validate(tomllib.load(file))
+    except OSError as error:
+        but = f"'{path}' cannot be read ({error.strerror})"
+        raise ArgumentError("config", "be a readable TOML file", but) from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise ArgumentError("config", "be a TOML file", f"'{path}' is not: {error}") from None
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(str(part) for part in first["loc"]) or "the file"
+        said = {
+            "extra_forbidden": "it has the unknown key {key}",
+            "missing": "it lacks the key {key}",
+        }.get(first["type"], "{key} is wrong: {message}")
+        but = said.format(key=key, message=first["msg"].removeprefix("Value error, "))
+        raise ArgumentError("config", f"describe a run ('{path}')", but) from None

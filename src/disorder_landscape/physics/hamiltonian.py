@@ -1,0 +1,84 @@
+"""The Bogoliubov–de Gennes Hamiltonian of the wire, Eq. S1 on a lattice, at θ = 0.
+
+Conventions, stated here once
+-----------------------------
+Basis: (u↑, u↓, −v↓, v↑) on every site, so matrices are τ ⊗ σ with index 2·τ + σ.
+Onsite:   (2t − μ + V_i) τz + V_Z σx + Σ(ω),  Σ(ω) = −γ(ω + Δ₀τx)/√(Δ₀² − ω²).
+Hopping from site i+1 to site i:  −t τz − (iα/2a) σy τz.
+Particle–hole symmetry: C H(ω)* C = −H(−ω) with C = τy σy.
+Charge: electrons have τz = +1; the leads conserve it.
+All matrices are real for |ω| < Δ₀, the energies of the paper.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from disorder_landscape.physics.parameters import FloatArray, Nanowire
+
+ComplexArray = NDArray[np.complex128]
+
+PAULI: dict[str, ComplexArray] = {
+    "0": np.eye(2, dtype=complex),
+    "x": np.array([[0, 1], [1, 0]], dtype=complex),
+    "y": np.array([[0, -1j], [1j, 0]], dtype=complex),
+    "z": np.array([[1, 0], [0, -1]], dtype=complex),
+}
+
+
+def tau_sigma(tau: str, sigma: str) -> ComplexArray:
+    """Return τ ⊗ σ for two of "0xyz", shape (4, 4)."""
+    return np.kron(PAULI[tau], PAULI[sigma])
+
+
+TAU_Z = tau_sigma("z", "0")
+TAU_X = tau_sigma("x", "0")
+SIGMA_X = tau_sigma("0", "x")
+TAU_Z_SIGMA_Y = tau_sigma("z", "y")
+PARTICLE_HOLE = tau_sigma("y", "y")
+
+
+def pairing_factors(wire: Nanowire, omega: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return γω/√(Δ₀²−ω²) and γΔ₀/√(Δ₀²−ω²) in meV: Σ(ω) = −(first) − (second) τx."""
+    root = np.sqrt(wire.delta0**2 - omega**2)
+    return wire.gamma * omega / root, wire.gamma * wire.delta0 / root
+
+
+def self_energy(wire: Nanowire, omega: float) -> ComplexArray:
+    """Return Σ(ω) of the parent superconductor, shape (4, 4), in meV; |ω| < Δ₀."""
+    normal, anomalous = pairing_factors(wire, np.asarray(omega))
+    return -normal * np.eye(4) - anomalous * TAU_X
+
+
+def onsite(wire: Nanowire, V: FloatArray, mu: float, B: float, omega: float) -> ComplexArray:
+    """Return the onsite terms of sites with the given potentials, shape (site, 4, 4), in meV."""
+    kinetic = (2 * wire.hopping - mu + np.asarray(V))[:, None, None] * TAU_Z
+    return np.asarray(kinetic + wire.zeeman_per_tesla * B * SIGMA_X + self_energy(wire, omega))
+
+
+def hopping(wire: Nanowire) -> ComplexArray:
+    """Return the hopping from site i+1 to site i, shape (4, 4), in meV."""
+    return np.asarray(-wire.hopping * TAU_Z - 1j * wire.spin_orbit_hopping * TAU_Z_SIGMA_Y)
+
+
+def lead_onsite(wire: Nanowire, B: float) -> ComplexArray:
+    """Return the onsite term of the leads, which have no pairing, shape (4, 4), in meV."""
+    zeeman = wire.lead_zeeman_per_tesla * B
+    return np.asarray((2 * wire.hopping - wire.lead_mu) * TAU_Z + zeeman * SIGMA_X)
+
+
+def lead_hopping(wire: Nanowire) -> ComplexArray:
+    """Return the hopping from cell i+1 to cell i of the leads, shape (4, 4), in meV."""
+    return np.asarray(-wire.hopping * TAU_Z - 1j * wire.lead_spin_orbit_hopping * TAU_Z_SIGMA_Y)
+
+
+def wire_hamiltonian(wire: Nanowire, mu: float, B: float, omega: float) -> ComplexArray:
+    """Return the whole matrix of the isolated wire, shape (4·site, 4·site), for tests and checks."""
+    n = wire.sites
+    H = np.zeros((n, 4, n, 4), dtype=complex)
+    sites = np.arange(n)
+    H[sites, :, sites, :] = onsite(wire, wire.potential_with_barriers, mu, B, omega)
+    H[sites[:-1], :, sites[1:], :] = hopping(wire)
+    H[sites[1:], :, sites[:-1], :] = hopping(wire).conj().T
+    return H.reshape(4 * n, 4 * n)

@@ -1,0 +1,106 @@
+"""The reference solver: Kwant, plainly written."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from disorder_landscape.physics import hamiltonian as h
+from disorder_landscape.physics.hamiltonian import ComplexArray
+from disorder_landscape.physics.parameters import FloatArray, Nanowire
+
+with warnings.catch_warnings():  # without MUMPS Kwant warns; for a chain SciPy's solver is as good
+    warnings.simplefilter("ignore", RuntimeWarning)
+    import kwant
+
+ELECTRON, HOLE = 0, 1
+
+
+def build_system(wire: Nanowire) -> Any:
+    """Return the finalised Kwant system of a wire.
+
+    Its parameters are `uniform`, the onsite matrix of a site without disorder, and B. The leads conserve charge (electrons are block 0, holes block 1) and have the particle–hole
+    symmetry of the whole, so that Kwant returns modes in which the reflection matrix at ω = 0 is
+    real up to one unitary per charge block.
+    """
+    V = wire.potential_with_barriers
+    lattice = kwant.lattice.chain(1, norbs=4)
+    system = kwant.Builder()
+
+    def onsite(site: Any, uniform: ComplexArray) -> ComplexArray:
+        return uniform + V[site.tag[0]] * h.TAU_Z
+
+    system[(lattice(i) for i in range(wire.sites))] = onsite
+    system[lattice.neighbors()] = h.hopping(wire)
+    system.attach_lead(_lead(wire, lattice, -1))
+    system.attach_lead(_lead(wire, lattice, +1))
+    return system.finalized()
+
+
+def _lead(wire: Nanowire, lattice: Any, direction: int) -> Any:
+    lead = kwant.Builder(
+        kwant.TranslationalSymmetry((direction,)),
+        conservation_law=-h.TAU_Z,
+        particle_hole=h.PARTICLE_HOLE,
+    )
+
+    def onsite(site: Any, B: float) -> ComplexArray:
+        return h.lead_onsite(wire, B)
+
+    lead[lattice(0)] = onsite
+    lead[lattice(0), lattice(1)] = h.lead_hopping(wire)
+    return lead
+
+
+def scattering_matrices(
+    wire: Nanowire, mu: FloatArray, B: FloatArray, omega: FloatArray
+) -> Iterator[tuple[tuple[int, int, int], Any]]:
+    """Yield ((i_mu, i_B, i_omega), scattering matrix); lead modes are computed once for all μ."""
+    system = build_system(wire)
+    for j, field in enumerate(B):
+        for k, energy in enumerate(omega):
+            ready = system.precalculate(energy, what="modes", params={"B": field})
+            for i, chemical_potential in enumerate(mu):
+                uniform = h.onsite(wire, np.zeros(1), chemical_potential, field, energy)[0]
+                params = {"B": field, "uniform": uniform}
+                yield (i, j, k), kwant.smatrix(ready, energy, params=params)
+
+
+def conductances(smatrix: Any) -> FloatArray:
+    """Return the BTK conductances at +ω and −ω, shape (2, 4), order G_LL, G_RR, G_LR, G_RL.
+
+    G_aa = N_e − R_ee + R_he and G_ab = T_ee − T_he (from b to a) at +ω; particle–hole symmetry gives
+    those at −ω from holes coming in, with electrons and holes exchanged.
+    """
+    G = np.empty((2, 4))
+    for sign, (same, other) in enumerate([(ELECTRON, HOLE), (HOLE, ELECTRON)]):
+        for lead in (0, 1):
+            modes = smatrix.num_propagating(lead) // 2
+            normal = smatrix.transmission((lead, same), (lead, same))
+            G[sign, lead] = modes - normal + smatrix.transmission((lead, other), (lead, same))
+        for position, (out, into) in enumerate([(0, 1), (1, 0)], start=2):
+            direct = smatrix.transmission((out, same), (into, same))
+            G[sign, position] = direct - smatrix.transmission((out, other), (into, same))
+    return G
+
+
+def bare_conductance(
+    wire: Nanowire, mu: FloatArray, B: FloatArray, omega: FloatArray
+) -> FloatArray:
+    """Return the T = 0 conductances at ±ω, shape (mu, B, omega, 2, 4), in e²/h; 0 ≤ ω < Δ₀."""
+    G = np.empty((mu.size, B.size, omega.size, 2, 4))
+    for index, smatrix in scattering_matrices(wire, mu, B, omega):
+        G[index] = conductances(smatrix)
+    return G
+
+
+def reflection_determinant(wire: Nanowire, mu: FloatArray, B: FloatArray) -> FloatArray:
+    """Return det r at ω = 0 of both ends, shape (lead, mu, B)."""
+    determinant = np.empty((2, mu.size, B.size))
+    for (i, j, _), smatrix in scattering_matrices(wire, mu, B, np.zeros(1)):
+        for lead in (0, 1):
+            determinant[lead, i, j] = np.linalg.det(smatrix.submatrix(lead, lead)).real
+    return determinant

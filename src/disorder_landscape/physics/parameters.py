@@ -1,0 +1,171 @@
+"""Units, constants and the nanowire with the paper's default parameters.
+
+Energies are in meV, lengths in nm, fields in T, temperatures in K, conductances in e²/h.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.constants import e, hbar, m_e, physical_constants
+
+from disorder_landscape.arguments import ArgumentError, number_in, require
+
+FloatArray = NDArray[np.float64]
+
+HBAR2_OVER_2ME: float = hbar**2 / (2 * m_e) / (1e-3 * e) * 1e18
+"""ħ²/2mₑ in meV nm²."""
+BOHR_MAGNETON: float = 1e3 * physical_constants["Bohr magneton in eV/T"][0]
+"""μ_B in meV/T."""
+BOLTZMANN: float = 1e3 * physical_constants["Boltzmann constant in eV/K"][0]
+"""k_B in meV/K."""
+
+SITES = 300
+"""Sites of the paper's 3 µm wire at a = 10 nm (S-I)."""
+ALPHA = 8.0
+"""Nominal spin–orbit coupling in meV nm (S-I)."""
+ALPHA_RANGE = (6.4, 9.6)
+"""Range of the uniform distribution of α in meV nm (S-II.1)."""
+TEMPERATURE = 0.05
+"""Temperature in K (S-I)."""
+BIAS = (-0.04, -0.02, 0.0, 0.02, 0.04)
+"""The five bias values in meV (S-II.1)."""
+MU_MAX = 0.6
+"""Largest chemical potential of the grid in meV (S-II.1)."""
+B_MAX = 0.8
+"""Largest magnetic field of the grid in T (S-II.1)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Nanowire:
+    """A disordered Majorana nanowire between two normal leads (paper, S-I).
+
+    Parameters
+    ----------
+    potential : array_like, shape (site,)
+        V_dis(x) in meV, without the barriers; at least two sites.
+    alpha : float
+        Spin–orbit coupling α in meV nm.
+    mass : float
+        Effective mass m* in units of the electron's.
+    lattice : float
+        Lattice spacing a in nm.
+    g : float
+        Landé g-factor.
+    gamma, delta0 : float
+        Coupling γ to the parent superconductor and its gap Δ₀, in meV (self-energy below Eq. S1).
+    barrier : tuple of two floats
+        V_Barrier on the first and on the last site, in meV (S-II.1).
+    lead_mu : float
+        Chemical potential of the leads in meV, a convention of the group's published codes.
+    lead_alpha, lead_g : float or None
+        Spin–orbit coupling and g-factor of the leads; None takes the wire's.
+
+    Raises
+    ------
+    ArgumentError
+        If the potential is not a finite vector, or a parameter is out of its range.
+    """
+
+    potential: FloatArray = field(repr=False)
+    alpha: float = ALPHA
+    mass: float = 0.03
+    lattice: float = 10.0
+    g: float = 25.0
+    gamma: float = 0.15
+    delta0: float = 0.12
+    barrier: tuple[float, float] = (15.0, 15.0)
+    lead_mu: float = 25.0
+    lead_alpha: float | None = None
+    lead_g: float | None = None
+
+    def __post_init__(self) -> None:
+        checked: dict[str, object] = {"potential": checked_potential(self.potential)}
+        for name, (low, high, unit) in PARAMETER_RANGES.items():
+            value = getattr(self, name)
+            if not (value is None and name.startswith("lead_")):
+                checked[name] = number_in(name, value, low, high, unit)
+        must = "be two numbers in meV, left and right"
+        require(np.shape(self.barrier) == (2,), "barrier", must, f"it is {self.barrier!r}")
+        checked["barrier"] = tuple(number_in("barrier", b, -1e3, 1e3, "meV") for b in self.barrier)
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)
+
+    @property
+    def sites(self) -> int:
+        """Number of sites."""
+        return len(self.potential)
+
+    @property
+    def hopping(self) -> float:
+        """t = ħ²/2m*a² in meV."""
+        return HBAR2_OVER_2ME / (self.mass * self.lattice**2)
+
+    @property
+    def spin_orbit_hopping(self) -> float:
+        """α/2a in meV."""
+        return self.alpha / (2 * self.lattice)
+
+    @property
+    def lead_spin_orbit_hopping(self) -> float:
+        """α/2a of the leads in meV."""
+        alpha = self.alpha if self.lead_alpha is None else self.lead_alpha
+        return alpha / (2 * self.lattice)
+
+    @property
+    def zeeman_per_tesla(self) -> float:
+        """V_Z/B = ½gμ_B in meV/T."""
+        return 0.5 * self.g * BOHR_MAGNETON
+
+    @property
+    def lead_zeeman_per_tesla(self) -> float:
+        """V_Z/B of the leads in meV/T."""
+        return 0.5 * (self.g if self.lead_g is None else self.lead_g) * BOHR_MAGNETON
+
+    @property
+    def potential_with_barriers(self) -> FloatArray:
+        """V_dis plus the barriers on the two end sites, shape (site,), in meV."""
+        V = self.potential.copy()
+        V[0] += self.barrier[0]
+        V[-1] += self.barrier[1]
+        return V
+
+
+PARAMETER_RANGES = {
+    "alpha": (0.0, 100.0, "meV nm"),
+    "mass": (1e-3, 10.0, "electron masses"),
+    "lattice": (0.1, 100.0, "nm"),
+    "g": (0.0, 100.0, ""),
+    "gamma": (0.0, 10.0, "meV"),
+    "delta0": (1e-3, 10.0, "meV"),
+    "lead_mu": (-1e3, 1e3, "meV"),
+    "lead_alpha": (0.0, 100.0, "meV nm"),
+    "lead_g": (0.0, 100.0, ""),
+}
+"""Range and unit within which each parameter of a wire is accepted."""
+
+
+def checked_potential(potential: ArrayLike, sites: int | None = None) -> FloatArray:
+    """Return a potential as a read-only vector of floats.
+
+    Raises
+    ------
+    ArgumentError
+        If it is not a finite vector of at least two sites, or not of the given number of sites.
+    """
+    must = "be a vector of one number in meV per site, at least two"
+    try:
+        V = np.array(potential, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ArgumentError("potential", must, "it holds something else") from None
+    require(V.ndim == 1 and V.size >= 2, "potential", must, f"it has shape {V.shape}")
+    require(
+        sites in (None, V.size), "potential", f"have {sites} sites", f"it has {V.size}"
+    )
+    require(bool(np.isfinite(V).all()), "potential", "be finite", "it holds NaN or infinity")
+    must = "stay within ±1000 meV"
+    require(bool((abs(V) <= 1e3).all()), "potential", must, f"it reaches {abs(V).max():g} meV")
+    V.setflags(write=False)
+    return V
