@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -34,7 +34,8 @@ def build_system(wire: Nanowire) -> Any:
         return uniform + V[site.tag[0]] * h.TAU_Z
 
     system[(lattice(i) for i in range(wire.sites))] = onsite
-    system[lattice.neighbors()] = h.hopping(wire)
+    for i in range(wire.sites - 1):
+        system[lattice(i), lattice(i + 1)] = h.hopping(wire)
     system.attach_lead(_lead(wire, lattice, -1))
     system.attach_lead(_lead(wire, lattice, +1))
     return system.finalized()
@@ -88,19 +89,23 @@ def conductances(smatrix: Any) -> FloatArray:
 
 
 def bare_conductance(
-    wire: Nanowire, mu: FloatArray, B: FloatArray, omega: FloatArray
+    wires: Sequence[Nanowire], mu: FloatArray, B: FloatArray, omega: FloatArray
 ) -> FloatArray:
-    """Return the T = 0 conductances at ±ω, shape (mu, B, omega, 2, 4), in e²/h; 0 ≤ ω < Δ₀."""
-    G = np.empty((mu.size, B.size, omega.size, 2, 4))
-    for index, smatrix in scattering_matrices(wire, mu, B, omega):
-        G[index] = conductances(smatrix)
+    """Return the T = 0 conductances at ±ω, shape (wire, mu, B, omega, 2, 4), in e²/h; 0 ≤ ω < Δ₀."""
+    G = np.empty((len(wires), mu.size, B.size, omega.size, 2, 4))
+    for w, wire in enumerate(wires):
+        for index, smatrix in scattering_matrices(wire, mu, B, omega):
+            G[w, *index] = conductances(smatrix)
     return G
 
 
-def reflection_determinant(wire: Nanowire, mu: FloatArray, B: FloatArray) -> FloatArray:
-    """Return det r at ω = 0 of both ends, shape (lead, mu, B)."""
-    determinant = np.empty((2, mu.size, B.size))
-    for (i, j, _), smatrix in scattering_matrices(wire, mu, B, np.zeros(1)):
-        for lead in (0, 1):
-            determinant[lead, i, j] = np.linalg.det(smatrix.submatrix(lead, lead)).real
+def reflection_determinant(
+    wires: Sequence[Nanowire], mu: FloatArray, B: FloatArray
+) -> FloatArray:
+    """Return det r at ω = 0 of both ends, shape (wire, lead, mu, B)."""
+    determinant = np.empty((len(wires), 2, mu.size, B.size))
+    for w, wire in enumerate(wires):
+        for (i, j, _), smatrix in scattering_matrices(wire, mu, B, np.zeros(1)):
+            for lead in (0, 1):
+                determinant[w, lead, i, j] = np.linalg.det(smatrix.submatrix(lead, lead)).real
     return determinant

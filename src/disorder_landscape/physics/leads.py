@@ -88,6 +88,23 @@ def fill_self_energies(
                     out[k, 0, charge, i, j] = out[k, 1, charge, 1 - i, 1 - j]
 
 
+@nb.njit(cache=True)
+def rotate_spin(sigma: ComplexArray, angle: float) -> None:  # pragma: no cover
+    """Replace the right lead's blocks by U†ΣU, U = exp(−iσy·angle), in place.
+
+    sigma has shape (energy, lead, charge, 2, 2). In the wire's rotated frame (see `recursion`) site n
+    has the angle nφ: 0 where the left lead is attached.
+    """
+    c, s = np.cos(angle), np.sin(angle)
+    for k in range(sigma.shape[0]):
+        for charge in range(2):
+            b = sigma[k, 1, charge]
+            m00, m01 = b[0, 0] * c + b[0, 1] * s, b[0, 1] * c - b[0, 0] * s
+            m10, m11 = b[1, 0] * c + b[1, 1] * s, b[1, 1] * c - b[1, 0] * s
+            b[0, 0], b[0, 1] = c * m00 + s * m10, c * m01 + s * m11
+            b[1, 0], b[1, 1] = c * m10 - s * m00, c * m11 - s * m01
+
+
 def lead_self_energies(wire: Nanowire, B: float, omega: FloatArray) -> ComplexArray:
     """Return the self-energies of the leads.
 

@@ -11,8 +11,12 @@ that hopping costs signs only; it turns the Zeeman term into V_Z(σx cos 2φn + 
 
 Layout: one buffer holds entry k of lane l at s[k·LANES + l], every entry of every 4×4 block its own
 scalar in the loop over lanes, the innermost: it then compiles to full-width vector instructions.
-A lane is one (μ, ω) of a given wire and field. Only D's 2×2 blocks are ever divided by; the largest
-reciprocal of their determinants is kept as a measure of how many digits the lane has lost.
+A lane is one (μ, ω) of a given wire and field.
+
+Rounding: D is factored as LΔLᵀ, never inverted for E and C. If a level of the eliminated piece lies
+at ω, D⁻¹ is as large as some g ≫ 1, the next D and C too, and E − C X Cᵀ with an explicit X = D⁻¹
+would lose g² ulps, where the factored E − (W Δ⁻¹) Wᵀ, W = C L⁻ᵀ, loses g. The largest |Δ⁻¹| met is
+kept as the measure of it, and lanes beyond a limit are solved again by `pivoted`.
 """
 
 from __future__ import annotations
@@ -40,7 +44,7 @@ def eliminate_inner_sites(
     ----------
     s : array, shape (STATE · LANES,)
         On entry the lanes' kinetic (2t − μ)/t', normal ω(1 + γ/√(Δ₀²−ω²))/t' and anomalous
-        γΔ₀/√(Δ₀²−ω²)/t' terms; on return E, C, D and the largest 1/|det| met.
+        γΔ₀/√(Δ₀²−ω²)/t' terms; on return E, C, D and the largest 1/|Δ| met.
     V, zeeman_x, zeeman_z : array, shape (site,)
         Potential with barriers and V_Z cos 2φn, V_Z sin 2φn, all in units of t'.
     """
@@ -63,62 +67,72 @@ def eliminate_inner_sites(
     for n in range(1, last):
         Vn, x, z = V[n + 1], zeeman_x[n + 1], zeeman_z[n + 1]
         for l in range(L):
-            # D = [[P, Q], [Qᵀ, R]]; X = D⁻¹ through the Schur complement S = R − QᵀP⁻¹Q
-            p0, p1, p2 = s[26 * L + l], s[27 * L + l], s[30 * L + l]
-            q0, q1, q2, q3 = s[28 * L + l], s[29 * L + l], s[31 * L + l], s[32 * L + l]
-            det_p = 1.0 / (p0 * p2 - p1 * p1)
-            i0, i1, i2 = p2 * det_p, -p1 * det_p, p0 * det_p
-            y0, y1 = i0 * q0 + i1 * q2, i0 * q1 + i1 * q3
-            y2, y3 = i1 * q0 + i2 * q2, i1 * q1 + i2 * q3
-            r0 = s[33 * L + l] - q0 * y0 - q2 * y2
-            r1 = s[34 * L + l] - q0 * y1 - q2 * y3
-            r2 = s[35 * L + l] - q1 * y1 - q3 * y3
-            det_s = 1.0 / (r0 * r2 - r1 * r1)
-            x7, x8, x9 = r2 * det_s, -r1 * det_s, r0 * det_s
-            x2, x3 = -(y0 * x7 + y1 * x8), -(y0 * x8 + y1 * x9)
-            x5, x6 = -(y2 * x7 + y3 * x8), -(y2 * x8 + y3 * x9)
-            x0 = i0 - x2 * y0 - x3 * y1
-            x1 = i1 - x2 * y2 - x3 * y3
-            x4 = i2 - x5 * y2 - x6 * y3
-            s[39 * L + l] = max(s[39 * L + l], max(abs(det_p), abs(det_s)))
-            # rows of Z = C X, which give C ← −C X τz and E ← E − Z Cᵀ
-            a0, a1, a2, a3 = s[10 * L + l], s[11 * L + l], s[12 * L + l], s[13 * L + l]
-            b0, b1, b2, b3 = s[14 * L + l], s[15 * L + l], s[16 * L + l], s[17 * L + l]
-            c0, c1, c2, c3 = s[18 * L + l], s[19 * L + l], s[20 * L + l], s[21 * L + l]
-            d0, d1, d2, d3 = s[22 * L + l], s[23 * L + l], s[24 * L + l], s[25 * L + l]
-            z0 = a0 * x0 + a1 * x1 + a2 * x2 + a3 * x3
-            z1 = a0 * x1 + a1 * x4 + a2 * x5 + a3 * x6
-            z2 = a0 * x2 + a1 * x5 + a2 * x7 + a3 * x8
-            z3 = a0 * x3 + a1 * x6 + a2 * x8 + a3 * x9
-            s[0 * L + l] -= z0 * a0 + z1 * a1 + z2 * a2 + z3 * a3
-            s[1 * L + l] -= z0 * b0 + z1 * b1 + z2 * b2 + z3 * b3
-            s[2 * L + l] -= z0 * c0 + z1 * c1 + z2 * c2 + z3 * c3
-            s[3 * L + l] -= z0 * d0 + z1 * d1 + z2 * d2 + z3 * d3
-            s[10 * L + l], s[11 * L + l], s[12 * L + l], s[13 * L + l] = -z0, -z1, z2, z3
-            z0 = b0 * x0 + b1 * x1 + b2 * x2 + b3 * x3
-            z1 = b0 * x1 + b1 * x4 + b2 * x5 + b3 * x6
-            z2 = b0 * x2 + b1 * x5 + b2 * x7 + b3 * x8
-            z3 = b0 * x3 + b1 * x6 + b2 * x8 + b3 * x9
-            s[4 * L + l] -= z0 * b0 + z1 * b1 + z2 * b2 + z3 * b3
-            s[5 * L + l] -= z0 * c0 + z1 * c1 + z2 * c2 + z3 * c3
-            s[6 * L + l] -= z0 * d0 + z1 * d1 + z2 * d2 + z3 * d3
-            s[14 * L + l], s[15 * L + l], s[16 * L + l], s[17 * L + l] = -z0, -z1, z2, z3
-            z0 = c0 * x0 + c1 * x1 + c2 * x2 + c3 * x3
-            z1 = c0 * x1 + c1 * x4 + c2 * x5 + c3 * x6
-            z2 = c0 * x2 + c1 * x5 + c2 * x7 + c3 * x8
-            z3 = c0 * x3 + c1 * x6 + c2 * x8 + c3 * x9
-            s[7 * L + l] -= z0 * c0 + z1 * c1 + z2 * c2 + z3 * c3
-            s[8 * L + l] -= z0 * d0 + z1 * d1 + z2 * d2 + z3 * d3
-            s[18 * L + l], s[19 * L + l], s[20 * L + l], s[21 * L + l] = -z0, -z1, z2, z3
-            z0 = d0 * x0 + d1 * x1 + d2 * x2 + d3 * x3
-            z1 = d0 * x1 + d1 * x4 + d2 * x5 + d3 * x6
-            z2 = d0 * x2 + d1 * x5 + d2 * x7 + d3 * x8
-            z3 = d0 * x3 + d1 * x6 + d2 * x8 + d3 * x9
-            s[9 * L + l] -= z0 * d0 + z1 * d1 + z2 * d2 + z3 * d3
-            s[22 * L + l], s[23 * L + l], s[24 * L + l], s[25 * L + l] = -z0, -z1, z2, z3
-            # D ← A_{n+1} − τz X τz
+            # D = LΔLᵀ with unit lower triangular L; r = 1/Δ
+            d0, d1, d2, d3 = s[26 * L + l], s[27 * L + l], s[28 * L + l], s[29 * L + l]
+            r0 = 1.0 / d0
+            l10, l20, l30 = d1 * r0, d2 * r0, d3 * r0
+            e2, e3 = s[31 * L + l] - l10 * d2, s[32 * L + l] - l10 * d3
+            r1 = 1.0 / (s[30 * L + l] - l10 * d1)
+            l21, l31 = e2 * r1, e3 * r1
+            f3 = s[34 * L + l] - l20 * d3 - l21 * e3
+            r2 = 1.0 / (s[33 * L + l] - l20 * d2 - l21 * e2)
+            l32 = f3 * r2
+            r3 = 1.0 / (s[35 * L + l] - l30 * d3 - l31 * e3 - l32 * f3)
+            growth = max(max(abs(r0), abs(r1)), max(abs(r2), abs(r3)))
+            s[39 * L + l] = max(s[39 * L + l], growth)
+            # rows of W = C L⁻ᵀ and U = W Δ⁻¹; then E ← E − U Wᵀ and C ← −U L⁻¹ τz
+            a0, a1 = s[10 * L + l], s[11 * L + l] - l10 * s[10 * L + l]
+            a2 = s[12 * L + l] - l20 * a0 - l21 * a1
+            a3 = s[13 * L + l] - l30 * a0 - l31 * a1 - l32 * a2
+            b0, b1 = s[14 * L + l], s[15 * L + l] - l10 * s[14 * L + l]
+            b2 = s[16 * L + l] - l20 * b0 - l21 * b1
+            b3 = s[17 * L + l] - l30 * b0 - l31 * b1 - l32 * b2
+            c0, c1 = s[18 * L + l], s[19 * L + l] - l10 * s[18 * L + l]
+            c2 = s[20 * L + l] - l20 * c0 - l21 * c1
+            c3 = s[21 * L + l] - l30 * c0 - l31 * c1 - l32 * c2
+            d0, d1 = s[22 * L + l], s[23 * L + l] - l10 * s[22 * L + l]
+            d2 = s[24 * L + l] - l20 * d0 - l21 * d1
+            d3 = s[25 * L + l] - l30 * d0 - l31 * d1 - l32 * d2
+            u0, u1, u2, u3 = a0 * r0, a1 * r1, a2 * r2, a3 * r3
+            s[0 * L + l] -= u0 * a0 + u1 * a1 + u2 * a2 + u3 * a3
+            s[1 * L + l] -= u0 * b0 + u1 * b1 + u2 * b2 + u3 * b3
+            s[2 * L + l] -= u0 * c0 + u1 * c1 + u2 * c2 + u3 * c3
+            s[3 * L + l] -= u0 * d0 + u1 * d1 + u2 * d2 + u3 * d3
+            u2 -= u3 * l32
+            u1 -= u2 * l21 + u3 * l31
+            u0 -= u1 * l10 + u2 * l20 + u3 * l30
+            s[10 * L + l], s[11 * L + l], s[12 * L + l], s[13 * L + l] = -u0, -u1, u2, u3
+            u0, u1, u2, u3 = b0 * r0, b1 * r1, b2 * r2, b3 * r3
+            s[4 * L + l] -= u0 * b0 + u1 * b1 + u2 * b2 + u3 * b3
+            s[5 * L + l] -= u0 * c0 + u1 * c1 + u2 * c2 + u3 * c3
+            s[6 * L + l] -= u0 * d0 + u1 * d1 + u2 * d2 + u3 * d3
+            u2 -= u3 * l32
+            u1 -= u2 * l21 + u3 * l31
+            u0 -= u1 * l10 + u2 * l20 + u3 * l30
+            s[14 * L + l], s[15 * L + l], s[16 * L + l], s[17 * L + l] = -u0, -u1, u2, u3
+            u0, u1, u2, u3 = c0 * r0, c1 * r1, c2 * r2, c3 * r3
+            s[7 * L + l] -= u0 * c0 + u1 * c1 + u2 * c2 + u3 * c3
+            s[8 * L + l] -= u0 * d0 + u1 * d1 + u2 * d2 + u3 * d3
+            u2 -= u3 * l32
+            u1 -= u2 * l21 + u3 * l31
+            u0 -= u1 * l10 + u2 * l20 + u3 * l30
+            s[18 * L + l], s[19 * L + l], s[20 * L + l], s[21 * L + l] = -u0, -u1, u2, u3
+            u0, u1, u2, u3 = d0 * r0, d1 * r1, d2 * r2, d3 * r3
+            s[9 * L + l] -= u0 * d0 + u1 * d1 + u2 * d2 + u3 * d3
+            u2 -= u3 * l32
+            u1 -= u2 * l21 + u3 * l31
+            u0 -= u1 * l10 + u2 * l20 + u3 * l30
+            s[22 * L + l], s[23 * L + l], s[24 * L + l], s[25 * L + l] = -u0, -u1, u2, u3
+            # X = L⁻ᵀ Δ⁻¹ L⁻¹ and D ← A_{n+1} − τz X τz
+            m20, m31 = l21 * l10 - l20, l32 * l21 - l31
+            m30 = -l30 - l31 * -l10 - l32 * m20
+            x23, x13, x03 = -r3 * l32, r3 * m31, r3 * m30
+            y12, y02, y01 = -r2 * l21, r2 * m20, -r1 * l10
+            x22, x12, x02 = r2 - x23 * l32, y12 - x13 * l32, y02 - x03 * l32
+            x11, x01 = r1 - y12 * l21 + x13 * m31, y01 - y02 * l21 + x03 * m31
+            x00 = r0 - y01 * l10 + y02 * m20 + x03 * m30
             w, an, q = s[37 * L + l], s[38 * L + l], s[36 * L + l] + Vn
-            s[26 * L + l], s[27 * L + l] = w - q - z - x0, -x - x1
-            s[28 * L + l], s[29 * L + l] = an + x2, x3
-            s[30 * L + l], s[31 * L + l], s[32 * L + l] = w - q + z - x4, x5, an + x6
-            s[33 * L + l], s[34 * L + l], s[35 * L + l] = w + q - z - x7, -x - x8, w + q + z - x9
+            s[26 * L + l], s[27 * L + l] = w - q - z - x00, -x - x01
+            s[28 * L + l], s[29 * L + l] = an + x02, x03
+            s[30 * L + l], s[31 * L + l], s[32 * L + l] = w - q + z - x11, x12, an + x13
+            s[33 * L + l], s[34 * L + l], s[35 * L + l] = w + q - z - x22, -x - x23, w + q + z - r3

@@ -1,0 +1,207 @@
+"""The fast solver: the real recursion over all wires, fields and pairs (μ, ω), in parallel.
+
+Same signatures as `kwant_solver`. Work is cut into pieces of one wire, one field and LANES pairs
+(μ, ω); a result depends on its own lane alone, so it is the same for any number of threads.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numba as nb
+import numpy as np
+from numpy.typing import NDArray
+
+from disorder_landscape.physics.ends import end_green_functions, lane_conductances
+from disorder_landscape.physics.hamiltonian import ComplexArray, pairing_factors
+from disorder_landscape.physics.leads import lead_self_energies, rotate_spin
+from disorder_landscape.physics.parameters import FloatArray, Nanowire
+from disorder_landscape.physics.pivoted import pivoted_end_green_functions
+from disorder_landscape.physics.recursion import (
+    ANOMALOUS,
+    GROWTH,
+    KINETIC,
+    LANES,
+    NORMAL,
+    STATE,
+    eliminate_inner_sites,
+)
+
+GROWTH_LIMIT = 1e7
+"""Largest inverse pivot (in units of 1/t') up to which real elimination is trusted."""
+
+
+@dataclass(frozen=True)
+class _Problem:
+    """What the kernels need, in units of each wire's t' = √(t² + (α/2a)²)."""
+
+    V: FloatArray  # (wire, site), with barriers
+    zeeman_x: FloatArray  # (wire, B, site), V_Z cos 2φn
+    zeeman_z: FloatArray  # (wire, B, site), V_Z sin 2φn
+    kinetic: FloatArray  # (wire, mu), 2t − μ
+    normal: FloatArray  # (wire, omega), ω + γω/√(Δ₀²−ω²)
+    anomalous: FloatArray  # (wire, omega), γΔ₀/√(Δ₀²−ω²)
+    sigma: ComplexArray  # (wire, B, omega, lead, charge, 2, 2), in the rotated frame
+
+
+def _prepare(
+    wires: Sequence[Nanowire], mu: FloatArray, B: FloatArray, omega: FloatArray
+) -> _Problem:
+    sites = wires[0].sites
+    hop = np.array([np.hypot(w.hopping, w.spin_orbit_hopping) for w in wires])
+    angle = np.array([np.arctan2(w.spin_orbit_hopping, w.hopping) for w in wires])
+    zeeman = np.outer([w.zeeman_per_tesla for w in wires] / hop, B)[:, :, None]
+    phases = 2 * angle[:, None, None] * np.arange(sites)
+    pairing = np.array([pairing_factors(w, omega) for w in wires])
+    sigma = np.array([[lead_self_energies(w, field, omega) for field in B] for w in wires])
+    for of_wire, phi in zip(sigma, angle, strict=True):
+        for of_field in of_wire:
+            rotate_spin(of_field, phi * (sites - 1))
+    return _Problem(
+        V=np.array([w.potential_with_barriers for w in wires]) / hop[:, None],
+        zeeman_x=zeeman * np.cos(phases),
+        zeeman_z=zeeman * np.sin(phases),
+        kinetic=(2 * np.array([[w.hopping] for w in wires]) - mu) / hop[:, None],
+        normal=(omega + pairing[:, 0]) / hop[:, None],
+        anomalous=pairing[:, 1] / hop[:, None],
+        sigma=sigma / hop.reshape(-1, *[1] * 6),
+    )
+
+
+@nb.njit(cache=True)
+def _solve_lanes(
+    V: FloatArray,
+    zeeman_x: FloatArray,
+    zeeman_z: FloatArray,
+    kinetic: FloatArray,
+    normal: FloatArray,
+    anomalous: FloatArray,
+    sigma: ComplexArray,
+    first: int,
+    growth_limit: float,
+    re: FloatArray,
+    im: FloatArray,
+) -> int:  # pragma: no cover
+    """Write −G of the end sites for the pairs from number `first` on; return how many pivoted."""
+    s = np.empty(STATE * LANES)
+    energy = np.empty(LANES, dtype=np.int64)
+    pairs = kinetic.size * normal.size
+    for l in range(LANES):
+        pair = min(first + l, pairs - 1)
+        energy[l] = pair % normal.size
+        s[KINETIC * LANES + l] = kinetic[pair // normal.size]
+        s[NORMAL * LANES + l] = normal[energy[l]]
+        s[ANOMALOUS * LANES + l] = anomalous[energy[l]]
+    eliminate_inner_sites(s, V, zeeman_x, zeeman_z)
+    end_green_functions(s, sigma, energy, re, im)
+    pivoted = 0
+    for l in range(min(LANES, pairs - first)):
+        if not s[GROWTH * LANES + l] < growth_limit:  # so that NaN pivots too
+            pivoted += 1
+            mu, e = min(first + l, pairs - 1) // normal.size, energy[l]
+            terms = kinetic[mu], normal[e], anomalous[e]
+            pivoted_end_green_functions(V, zeeman_x, zeeman_z, terms, sigma[e], l, re, im)
+    return pivoted
+
+
+@nb.njit(cache=True, parallel=True)
+def _conductance_kernel(
+    V: FloatArray,
+    zeeman_x: FloatArray,
+    zeeman_z: FloatArray,
+    kinetic: FloatArray,
+    normal: FloatArray,
+    anomalous: FloatArray,
+    sigma: ComplexArray,
+    growth_limit: float,
+    out: FloatArray,
+) -> int:  # pragma: no cover
+    """Fill out, shape (wire, B, mu·omega, 2, 4); return how many lanes needed pivoting."""
+    wires, fields, pairs = out.shape[:3]
+    pieces = (pairs + LANES - 1) // LANES
+    pivoted = 0
+    for task in nb.prange(wires * fields * pieces):
+        w, f, first = task // pieces // fields, task // pieces % fields, task % pieces * LANES
+        re, im = np.empty(64 * LANES), np.empty(64 * LANES)
+        pivoted += _solve_lanes(
+            V[w], zeeman_x[w, f], zeeman_z[w, f], kinetic[w], normal[w], anomalous[w],
+            sigma[w, f], first, growth_limit, re, im,
+        )  # fmt: skip
+        for l in range(min(LANES, pairs - first)):
+            at = sigma[w, f, (first + l) % normal.shape[1]]
+            lane_conductances(re, im, at, l, out[w, f, first + l])
+    return pivoted
+
+
+@nb.njit(cache=True, parallel=True)
+def _end_block_kernel(
+    V: FloatArray,
+    zeeman_x: FloatArray,
+    zeeman_z: FloatArray,
+    kinetic: FloatArray,
+    normal: FloatArray,
+    anomalous: FloatArray,
+    sigma: ComplexArray,
+    growth_limit: float,
+    out: ComplexArray,
+) -> int:  # pragma: no cover
+    """Fill out, shape (wire, B, mu·omega, lead, 4, 4), with G_LL and G_RR in units of 1/t'."""
+    wires, fields, pairs = out.shape[:3]
+    pieces = (pairs + LANES - 1) // LANES
+    pivoted = 0
+    for task in nb.prange(wires * fields * pieces):
+        w, f, first = task // pieces // fields, task // pieces % fields, task % pieces * LANES
+        re, im = np.empty(64 * LANES), np.empty(64 * LANES)
+        pivoted += _solve_lanes(
+            V[w], zeeman_x[w, f], zeeman_z[w, f], kinetic[w], normal[w], anomalous[w],
+            sigma[w, f], first, growth_limit, re, im,
+        )  # fmt: skip
+        for l in range(min(LANES, pairs - first)):
+            for lead in range(2):
+                for i in range(4):
+                    for j in range(4):
+                        at = (8 * min(i, j) + max(i, j) + 36 * lead) * LANES + l
+                        out[w, f, first + l, lead, i, j] = -complex(re[at], im[at])
+    return pivoted
+
+
+def bare_conductance(
+    wires: Sequence[Nanowire],
+    mu: FloatArray,
+    B: FloatArray,
+    omega: FloatArray,
+    growth_limit: float = GROWTH_LIMIT,
+) -> FloatArray:
+    """Return the T = 0 conductances at ±ω, shape (wire, mu, B, omega, 2, 4), in e²/h; 0 ≤ ω < Δ₀.
+
+    The last axes are the sign of ω (+, −) and G_LL, G_RR, G_LR, G_RL. All wires have the same number
+    of sites. Lanes whose elimination grows beyond `growth_limit` are solved by `pivoted` instead.
+    """
+    p = _prepare(wires, mu, B, omega)
+    out = np.empty((len(wires), B.size, mu.size * omega.size, 2, 4))
+    _conductance_kernel(*_arrays(p), growth_limit, out)
+    shaped = out.reshape(len(wires), B.size, mu.size, omega.size, 2, 4)
+    return np.asarray(shaped.swapaxes(1, 2))
+
+
+def reflection_determinant(
+    wires: Sequence[Nanowire], mu: FloatArray, B: FloatArray, growth_limit: float = GROWTH_LIMIT
+) -> FloatArray:
+    """Return det r at ω = 0 of both ends, shape (wire, lead, mu, B).
+
+    r = −1 + iΓ^½ G Γ^½ (Fisher–Lee), so det r = det(−1 + iΓG); it is real by particle–hole symmetry.
+    """
+    p = _prepare(wires, mu, B, np.zeros(1))
+    out = np.empty((len(wires), B.size, mu.size, 2, 4, 4), dtype=np.complex128)
+    _end_block_kernel(*_arrays(p), growth_limit, out)
+    gamma = np.zeros((len(wires), B.size, 1, 2, 4, 4))
+    for charge in range(2):
+        block = slice(2 * charge, 2 * charge + 2)
+        gamma[:, :, 0, :, block, block] = -2 * p.sigma[:, :, 0, :, charge].imag
+    determinant = np.linalg.det(1j * gamma @ out - np.eye(4)).real
+    return np.asarray(np.moveaxis(determinant, (3, 2, 1), (1, 2, 3)))
+
+
+def _arrays(p: _Problem) -> tuple[NDArray[np.inexact], ...]:
+    return p.V, p.zeeman_x, p.zeeman_z, p.kinetic, p.normal, p.anomalous, p.sigma

@@ -1,0 +1,178 @@
+"""The conductance matrix and the topological visibility on grids, through either solver."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from disorder_landscape.arguments import ArgumentError, grid_in, number_in, require
+from disorder_landscape.physics.parameters import TEMPERATURE, FloatArray, Nanowire
+from disorder_landscape.physics.thermal import ENERGY_SPACING, thermal_grid
+
+CONDUCTANCES = ("G_LL", "G_RR", "G_LR", "G_RL")
+"""Order of the conductance matrix's elements wherever they share an axis."""
+LONG_NAMES = {
+    "mu": ("chemical potential", "meV"),
+    "B": ("magnetic field along the wire", "T"),
+    "bias": ("bias voltage", "meV"),
+    "G_LL": ("local conductance dI_L/dV_L", "e^2/h"),
+    "G_RR": ("local conductance dI_R/dV_R", "e^2/h"),
+    "G_LR": ("nonlocal conductance -dI_L/dV_R", "e^2/h"),
+    "G_RL": ("nonlocal conductance -dI_R/dV_L", "e^2/h"),
+    "T_IV": ("topological visibility det r at zero energy", "1"),
+}
+"""Long name and units of every variable and coordinate."""
+BLOCK_BYTES = 2**26
+"""T = 0 conductances held at one time."""
+
+BareConductance = Callable[[Sequence[Nanowire], FloatArray, FloatArray, FloatArray], FloatArray]
+Determinant = Callable[[Sequence[Nanowire], FloatArray, FloatArray], FloatArray]
+
+
+def conductance(
+    wire: Nanowire | Sequence[Nanowire],
+    mu: ArrayLike,
+    B: ArrayLike,
+    bias: ArrayLike = 0.0,
+    temperature: float = TEMPERATURE,
+    solver: str = "fast",
+    energy_spacing: float = ENERGY_SPACING,
+) -> xr.Dataset:
+    """Return the conductance matrix of a wire, or of several of equal length (S-I).
+
+    Parameters
+    ----------
+    wire : Nanowire or sequence of them
+    mu, B, bias : float or array
+        Chemical potentials in meV, fields in T, biases in meV; increasing.
+    temperature : float
+        In K; 0 gives the bare conductance at ω = bias.
+    solver : {"fast", "kwant"}
+        The real recursion, or Kwant, the reference, thousands of times slower.
+    energy_spacing : float
+        Largest spacing in meV of the energies that a finite temperature averages over.
+
+    Returns
+    -------
+    xarray.Dataset
+        G_LL, G_RR, G_LR, G_RL in e²/h, dims (mu, B, bias), with a leading dim realization for
+        several wires.
+
+    Raises
+    ------
+    ArgumentError
+        If a grid is empty, unsorted or out of range, the temperature negative, the bias or its
+        thermal window beyond the gap, the solver unknown, or the wires of unequal length.
+    """
+    wires = _as_wires(wire)
+    delta0 = min(w.delta0 for w in wires)
+    grids = {
+        "mu": grid_in("mu", mu, -1e3, 1e3, "meV"),
+        "B": grid_in("B", B, -100.0, 100.0, "T"),
+        "bias": grid_in("bias", bias, -delta0 * (1 - 1e-6), delta0 * (1 - 1e-6), "meV"),
+    }
+    temperature = number_in("temperature", temperature, 0.0, 10.0, "K")
+    energy_spacing = number_in("energy_spacing", energy_spacing, 1e-7, 1.0, "meV")
+    if temperature > 0:
+        omega, weights = thermal_grid(grids["bias"], temperature, delta0, energy_spacing)
+    else:
+        omega, weights = _bare_grid(grids["bias"])
+    bare = _solver(solver)[0]
+    G = np.empty((len(wires), grids["mu"].size, grids["B"].size, grids["bias"].size, 4))
+    for some, points in _blocks(len(wires), grids["mu"].size, grids["B"].size * omega.size * 64):
+        G0 = bare(wires[some], grids["mu"][points], grids["B"], omega)
+        G[some, points] = np.einsum("wmbkse,vks->wmbve", G0, weights)
+    data = {name: (("realization", *grids), G[..., i]) for i, name in enumerate(CONDUCTANCES)}
+    dataset = xr.Dataset(data, coords=grids, attrs={"temperature": temperature, "solver": solver})
+    return _finish(dataset, wire)
+
+
+def topological_visibility(
+    wire: Nanowire | Sequence[Nanowire],
+    mu: ArrayLike,
+    B: ArrayLike,
+    barrier: bool = True,
+    solver: str = "fast",
+) -> xr.DataArray:
+    """Return T_IV = det r at ω = 0 of both ends of a wire, or of several of equal length (S-I).
+
+    Parameters
+    ----------
+    wire : Nanowire or sequence of them
+    mu, B : float or array
+        Chemical potentials in meV and fields in T; increasing.
+    barrier : bool
+        Whether with the device's barriers, or without any.
+    solver : {"fast", "kwant"}
+
+    Returns
+    -------
+    xarray.DataArray
+        T_IV in [−1, 1], dims (lead, mu, B), lead = L, R, with a leading dim realization for several
+        wires; negative where the wire is topological.
+
+    Raises
+    ------
+    ArgumentError
+        As in `conductance`.
+    """
+    wires = _as_wires(wire)
+    grids = {"mu": grid_in("mu", mu, -1e3, 1e3, "meV"), "B": grid_in("B", B, -100.0, 100.0, "T")}
+    if not barrier:
+        wires = [replace(w, barrier=(0.0, 0.0)) for w in wires]
+    determinant = _solver(solver)[1](wires, grids["mu"], grids["B"])
+    coords = {"lead": ["L", "R"], **grids}
+    data = {"T_IV": (("realization", *coords), determinant)}
+    T: xr.DataArray = _finish(xr.Dataset(data, coords=coords), wire)["T_IV"]
+    return T
+
+
+def _as_wires(wire: Nanowire | Sequence[Nanowire]) -> list[Nanowire]:
+    wires = [wire] if isinstance(wire, Nanowire) else list(wire)
+    must = "be a Nanowire or a sequence of them of equal length"
+    ok = bool(wires) and all(isinstance(w, Nanowire) for w in wires)
+    require(ok, "wire", must, f"it is {type(wire).__name__!r} of {len(wires)}")
+    lengths = sorted({w.sites for w in wires})
+    require(len(lengths) == 1, "wire", must, f"they have {lengths} sites")
+    return wires
+
+
+def _solver(name: str) -> tuple[BareConductance, Determinant]:
+    if name == "fast":
+        from disorder_landscape.physics import fast_solver
+
+        return fast_solver.bare_conductance, fast_solver.reflection_determinant
+    if name == "kwant":
+        from disorder_landscape.physics import kwant_solver
+
+        return kwant_solver.bare_conductance, kwant_solver.reflection_determinant
+    raise ArgumentError("solver", "be 'fast' or 'kwant'", f"it is {name!r}")
+
+
+def _bare_grid(bias: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the energies |V| and the weights that pick G₀(V), shape (bias, omega, 2)."""
+    omega, index = np.unique(abs(bias), return_inverse=True)
+    weights = np.zeros((bias.size, omega.size, 2))
+    weights[np.arange(bias.size), index, (bias < 0).astype(int)] = 1.0
+    return omega, weights
+
+
+def _blocks(wires: int, points: int, bytes_per_point: int) -> Iterator[tuple[slice, slice]]:
+    """Cut the wires and values of μ into blocks of at most BLOCK_BYTES."""
+    at_once = max(1, min(points, BLOCK_BYTES // bytes_per_point))
+    wires_at_once = max(1, BLOCK_BYTES // (bytes_per_point * points))
+    for w in range(0, wires, wires_at_once):
+        for p in range(0, points, at_once):
+            yield slice(w, w + wires_at_once), slice(p, p + at_once)
+
+
+def _finish(dataset: xr.Dataset, wire: Nanowire | Sequence[Nanowire]) -> xr.Dataset:
+    """Name units and drop the dim realization of a single wire."""
+    for name, (long_name, units) in LONG_NAMES.items():
+        if name in dataset.variables:
+            dataset[name].attrs.update(long_name=long_name, units=units)
+    return dataset.isel(realization=0) if isinstance(wire, Nanowire) else dataset
