@@ -4,8 +4,22 @@ A reproduction of Taylor, Sau and Das Sarma, "Machine Learning the Disorder Land
 Nanowires".
 """
 
+from typing import TYPE_CHECKING, Any
+
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.physics.parameters import Nanowire
 from disorder_landscape.physics.transport import conductance, topological_visibility
 
-__all__ = ["ArgumentError", "Nanowire", "conductance", "topological_visibility"]
+if TYPE_CHECKING:
+    from disorder_landscape.learning.prediction import predict
+
+__all__ = ["ArgumentError", "Nanowire", "conductance", "predict", "topological_visibility"]
+
+
+def __getattr__(name: str) -> Any:
+    """Import what needs scikit-learn only when it is asked for."""
+    if name == "predict":
+        from disorder_landscape.learning.prediction import predict
+
+        return predict
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -21,6 +21,7 @@ from disorder_landscape.physics.parameters import (
     TEMPERATURE,
     FloatArray,
 )
+from disorder_landscape.physics.thermal import ENERGY_SPACING
 
 Positive = Annotated[int, Field(ge=1)]
 LearningRate = Annotated[float, Field(gt=0, le=1)]
@@ -54,6 +55,8 @@ class DatasetConfig(_Section):
     """V_bias in meV."""
     temperature: Annotated[float, Field(ge=0, le=10)] = TEMPERATURE
     """In K."""
+    energy_spacing: Annotated[float, Field(gt=0, le=0.1)] = ENERGY_SPACING
+    """Of the energies that the temperature averages over, in meV."""
     seed: Annotated[int, Field(ge=0)] = 0
     shard_size: Positive = 50
     """Realizations per file."""
@@ -87,7 +90,7 @@ class DatasetConfig(_Section):
     @property
     def hash(self) -> str:
         """Hash of everything that decides the content of a realization (not how many there are)."""
-        content = self.model_dump_json(exclude={"realizations", "shard_size"})
+        content = self.model_dump_json(exclude={"realizations"})
         return hashlib.sha256(content.encode()).hexdigest()[:16]
 
 

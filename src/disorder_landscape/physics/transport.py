@@ -26,11 +26,12 @@ LONG_NAMES = {
     "T_IV": ("topological visibility det r at zero energy", "1"),
 }
 """Long name and units of every variable and coordinate."""
-BLOCK_BYTES = 2**26
-"""T = 0 conductances held at one time."""
+BLOCK_ENERGIES = {"fast": 2**18, "kwant": 2**8}
+"""Energies that each solver is given at a time: about 16 MB and one second."""
 
 BareConductance = Callable[[Sequence[Nanowire], FloatArray, FloatArray, FloatArray], FloatArray]
 Determinant = Callable[[Sequence[Nanowire], FloatArray, FloatArray], FloatArray]
+Progress = Callable[[int, int], None]
 
 
 def conductance(
@@ -41,6 +42,7 @@ def conductance(
     temperature: float = TEMPERATURE,
     solver: str = "fast",
     energy_spacing: float = ENERGY_SPACING,
+    progress: Progress | None = None,
 ) -> xr.Dataset:
     """Return the conductance matrix of a wire, or of several of equal length (S-I).
 
@@ -55,6 +57,8 @@ def conductance(
         The real recursion, or Kwant, the reference, thousands of times slower.
     energy_spacing : float
         Largest spacing in meV of the energies that a finite temperature averages over.
+    progress : callable, optional
+        Told how many energies have just been solved, and how many there are in all.
 
     Returns
     -------
@@ -83,9 +87,12 @@ def conductance(
         omega, weights = _bare_grid(grids["bias"])
     bare = _solver(solver)[0]
     G = np.empty((len(wires), grids["mu"].size, grids["B"].size, grids["bias"].size, 4))
-    for some, points in _blocks(len(wires), grids["mu"].size, grids["B"].size * omega.size * 64):
-        G0 = bare(wires[some], grids["mu"][points], grids["B"], omega)
-        G[some, points] = np.einsum("wmbkse,vks->wmbve", G0, weights)
+    shape = (len(wires), grids["mu"].size, grids["B"].size)
+    for some, points, fields in _blocks(shape, BLOCK_ENERGIES[solver] // omega.size):
+        G0 = bare(wires[some], grids["mu"][points], grids["B"][fields], omega)
+        G[some, points, fields] = np.einsum("wmbkse,vks->wmbve", G0, weights)
+        if progress is not None:
+            progress(G0[..., 0, 0].size, np.prod(shape, dtype=int) * omega.size)
     data = {name: (("realization", *grids), G[..., i]) for i, name in enumerate(CONDUCTANCES)}
     dataset = xr.Dataset(data, coords=grids, attrs={"temperature": temperature, "solver": solver})
     return _finish(dataset, wire)
@@ -161,13 +168,20 @@ def _bare_grid(bias: FloatArray) -> tuple[FloatArray, FloatArray]:
     return omega, weights
 
 
-def _blocks(wires: int, points: int, bytes_per_point: int) -> Iterator[tuple[slice, slice]]:
-    """Cut the wires and values of μ into blocks of at most BLOCK_BYTES."""
-    at_once = max(1, min(points, BLOCK_BYTES // bytes_per_point))
-    wires_at_once = max(1, BLOCK_BYTES // (bytes_per_point * points))
+def _blocks(shape: tuple[int, int, int], most: int) -> Iterator[tuple[slice, slice, slice]]:
+    """Cut an array (wire, mu, B) into blocks of at most `most` entries, or single ones."""
+    wires, points, fields = shape
+    points_at_once = max(1, min(points, most))
+    fields_at_once = max(1, min(fields, most // points_at_once))
+    wires_at_once = max(1, most // (points * fields))
     for w in range(0, wires, wires_at_once):
-        for p in range(0, points, at_once):
-            yield slice(w, w + wires_at_once), slice(p, p + at_once)
+        for p in range(0, points, points_at_once):
+            for f in range(0, fields, fields_at_once):
+                yield (
+                    slice(w, w + wires_at_once),
+                    slice(p, p + points_at_once),
+                    slice(f, f + fields_at_once),
+                )
 
 
 def _finish(dataset: xr.Dataset, wire: Nanowire | Sequence[Nanowire]) -> xr.Dataset:

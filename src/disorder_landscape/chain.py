@@ -1,0 +1,175 @@
+"""The chain of one run: dataset, trained network, test realizations with their predictions.
+
+A run is a configuration and a folder: build/<name>/dataset, build/<name>/model and
+build/<name>/evaluation.nc. The preset "shipped" needs no dataset: its model and test set are in
+data_small.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from pathlib import Path
+
+import xarray as xr
+from tqdm import tqdm
+
+from disorder_landscape.arguments import ArgumentError, require
+from disorder_landscape.config import Config, load_config
+from disorder_landscape.dataset import shards
+from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+SHIPPED = "shipped"
+SHIPPED_MODEL = REPOSITORY / "data_small" / "models" / "five_components_and_alpha"
+SHIPPED_TEST_SET = REPOSITORY / "data_small" / "five_components_and_alpha_test.nc"
+
+
+@dataclass(frozen=True)
+class Run:
+    """A configuration with the folder of its results; None where the shipped data are used."""
+
+    name: str
+    config: Config
+    folder: Path
+
+    @property
+    def dataset_folder(self) -> Path:
+        """Folder of the shards."""
+        return self.folder / "dataset"
+
+    @property
+    def model_folder(self) -> Path:
+        """Folder of the trained network."""
+        return SHIPPED_MODEL if self.name == SHIPPED else self.folder / "model"
+
+    @property
+    def evaluation_file(self) -> Path:
+        """Test realizations and predictions."""
+        return self.folder / "evaluation.nc"
+
+
+def open_run(config: str | Path, build: str | Path = "build") -> Run:
+    """Return the run of a configuration file; its name is the file's."""
+    return Run(Path(config).stem, load_config(config), Path(build) / Path(config).stem)
+
+
+def preset_run(preset: str, build: str | Path = "build") -> Run:
+    """Return the run of configs/<preset>.toml, or the one whose results are shipped.
+
+    Raises
+    ------
+    ArgumentError
+        If there is no such preset.
+    """
+    if preset == SHIPPED:
+        from disorder_landscape.learning.model import load_model_config
+
+        return Run(SHIPPED, load_model_config(SHIPPED_MODEL), Path(build) / SHIPPED)
+    presets = sorted(path.stem for path in (REPOSITORY / "configs").glob("*.toml"))
+    must = f"be one of {', '.join([*presets, SHIPPED])}"
+    require(preset in presets, "preset", must, f"it is '{preset}'")
+    return open_run(REPOSITORY / "configs" / f"{preset}.toml", build)
+
+
+def preset_config(preset: str) -> Config:
+    """Return the configuration of a preset."""
+    return preset_run(preset).config
+
+
+def generate(run: Run, workers: int) -> None:
+    """Make what is missing of the run's dataset, with a progress bar."""
+    with tqdm(
+        total=run.config.dataset.realizations,
+        unit=" realizations",
+        desc="generate",
+        smoothing=0.1,
+        initial=shards.status(run.config.dataset, run.dataset_folder).realizations,
+    ) as bar:
+        shards.generate(run.config.dataset, run.dataset_folder, workers, bar.update)
+
+
+def train(run: Run) -> None:
+    """Train the run's network, or go on with it; generate must have been called."""
+    from disorder_landscape.learning.training import train as train_network
+
+    dataset = shards.read_shards(run.config.dataset, run.dataset_folder)
+    train_network(dataset, run.config, run.model_folder, "landscape train")
+
+
+def evaluate(run: Run) -> xr.Dataset:
+    """Predict the run's test realizations, write evaluation.nc and return it.
+
+    Returns
+    -------
+    xarray.Dataset
+        components, alpha, potential and components_predicted, alpha_predicted, potential_predicted,
+        with a dim realization; the scores R2, delta_V, delta_alpha, R2_<label> as attributes.
+    """
+    from disorder_landscape.learning.metrics import score
+    from disorder_landscape.learning.model import load_model
+    from disorder_landscape.learning.prediction import predict
+    from disorder_landscape.learning.scaling import label_array
+
+    test = _test_set(run)
+    model = load_model(run.model_folder)
+    predicted = predict(model, test)
+    alpha_is_label = run.config.dataset.alpha_is_label
+    scores = score(
+        label_array(test, alpha_is_label),
+        label_array(predicted, alpha_is_label),
+        model.labels,
+        run.config.dataset.sites,
+    )
+    names = ("components", "alpha", "potential")
+    evaluation = xr.merge(
+        [test[list(names)], predicted[list(names)].rename({n: f"{n}_predicted" for n in names})],
+        combine_attrs="drop",
+    )
+    attrs = {
+        **provenance(f"landscape evaluate ({run.name})"),
+        "fingerprint": _fingerprint(run),
+        "R2": scores.r2,
+        "delta_V": scores.delta_V,
+        **({} if scores.delta_alpha is None else {"delta_alpha": scores.delta_alpha}),
+        **{f"R2_{label}": r2 for label, r2 in scores.r2_by_label.items()},
+    }
+    write_dataset(evaluation, run.evaluation_file, attrs)
+    return evaluation.assign_attrs(attrs)
+
+
+def evaluation(preset: str, build: str | Path = "build", workers: int = 2) -> xr.Dataset:
+    """Return what `evaluate` gives for a preset, after whatever is missing of its chain."""
+    run = preset_run(preset, build)
+    if run.name != SHIPPED and not (run.model_folder / "metrics.json").exists():
+        generate(run, workers)
+        train(run)
+    if run.evaluation_file.exists():
+        stored = read_dataset(run.evaluation_file, ("components_predicted",))
+        if stored.attrs.get("fingerprint") == _fingerprint(run):
+            return stored
+    return evaluate(run)
+
+
+def _test_set(run: Run) -> xr.Dataset:
+    if run.name == SHIPPED:
+        return read_dataset(SHIPPED_TEST_SET, shards.VARIABLES)
+    from disorder_landscape.learning.training import split
+
+    _, test = split(run.config.dataset.realizations, run.config.training.test_fraction)
+    return shards.read_shards(run.config.dataset, run.dataset_folder).isel(realization=test)
+
+
+def _fingerprint(run: Run) -> str:
+    """Return a hash that changes with the network or with the test set."""
+    try:
+        network = (run.model_folder / "network.keras").read_bytes()
+    except OSError as error:
+        must = "be a folder written by `landscape train`"
+        but = f"'{run.model_folder}' has no network ({error.strerror})"
+        raise ArgumentError("model", must, but) from None
+    digest = hashlib.sha256(network)
+    digest.update(run.config.dataset.model_dump_json().encode())
+    if run.name == SHIPPED:
+        digest.update(SHIPPED_TEST_SET.read_bytes())
+    return digest.hexdigest()

@@ -1,0 +1,203 @@
+"""The command line: thin; each command reads its options and calls the library."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from disorder_landscape.arguments import ArgumentError, require
+
+app = typer.Typer(
+    help="Simulate disordered Majorana nanowires, and read their disorder off their conductance.",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+)
+
+ConfigFile = Annotated[Path, typer.Option("--config", "-c", help="TOML file of the run.")]
+Build = Annotated[Path, typer.Option(help="Folder of the results, one subfolder per run.")]
+Workers = Annotated[int, typer.Option(min=1, max=1024, help="Processes, one thread each.")]
+
+
+def main() -> None:
+    """Run the command line; bad input is one sentence on stderr and exit code 2."""
+    try:
+        app()
+    except ArgumentError as error:
+        print(f"landscape: {error}", file=sys.stderr)
+        sys.exit(2)
+    except KeyboardInterrupt:
+        print("landscape: interrupted; what is done stays, the same command goes on", file=sys.stderr)
+        sys.exit(130)
+
+
+@app.command()
+def simulate(
+    potential: Annotated[
+        Path | None, typer.Option(help="V_dis per site in meV: .csv, .npy or .nc file.")
+    ] = None,
+    seed: Annotated[
+        int | None, typer.Option(min=0, help="Draw the potential with this seed instead.")
+    ] = None,
+    components: Annotated[
+        int, typer.Option(help="Disorder components of a drawn potential; 0: pristine.")
+    ] = 5,
+    sites: Annotated[int, typer.Option(help="Sites of the wire, 10 nm each.")] = 300,
+    alpha: Annotated[float, typer.Option(help="Spin-orbit coupling in meV nm.")] = 8.0,
+    g: Annotated[float, typer.Option(help="Lande g-factor.")] = 25.0,
+    gamma: Annotated[float, typer.Option(help="Coupling to the superconductor in meV.")] = 0.15,
+    delta0: Annotated[float, typer.Option(help="Gap of the superconductor in meV.")] = 0.12,
+    barrier: Annotated[float, typer.Option(help="Barrier on both end sites in meV.")] = 15.0,
+    temperature: Annotated[float, typer.Option(help="In K; 0 is the bare conductance.")] = 0.05,
+    mu: Annotated[str, typer.Option(help="Chemical potentials in meV.")] = "0",
+    B: Annotated[str, typer.Option("--B", help="Magnetic fields in T.")] = "0:0.8:81",
+    bias: Annotated[str, typer.Option(help="Bias voltages in meV.")] = "-0.04:0.04:81",
+    solver: Annotated[str, typer.Option(help="fast, or kwant (the reference).")] = "fast",
+    output: Annotated[Path, typer.Option("--output", "-o", help="netCDF file.")] = Path("wire.nc"),
+    plot: Annotated[Path | None, typer.Option(help="Picture of a quick look.")] = None,
+) -> None:
+    """Conductance matrix and topological visibility of one wire.
+
+    Grids are numbers ("0.3"), lists ("0,0.1") or ranges ("start:stop:points").
+
+    Example: landscape simulate --seed 1 --mu 0 --B 0:0.8:81 --bias -0.04:0.04:81 -o wire.nc
+    --plot wire.png
+    """
+    import numpy as np
+    from tqdm import tqdm
+
+    from disorder_landscape import simulation
+    from disorder_landscape.dataset.store import provenance, write_dataset
+    from disorder_landscape.physics.disorder import disorder_realization
+    from disorder_landscape.physics.parameters import Nanowire
+
+    both = "one of --potential and --seed at most"
+    require(potential is None or seed is None, "potential", f"come with {both}", "both are given")
+    require(sites >= 2, "sites", "be 2 or more", f"it is {sites}")
+    must = f"be from 0 to {sites - 1}"
+    require(0 <= components < sites, "components", must, f"it is {components}")
+    if potential is not None:
+        V = simulation.read_potential(potential, sites)
+    elif seed is None or components == 0:
+        V = np.zeros(sites)
+    else:
+        V = disorder_realization(np.random.default_rng(seed), components, sites)[1]
+    wire = Nanowire(
+        V, alpha=alpha, g=g, gamma=gamma, delta0=delta0, barrier=(barrier, barrier)
+    )
+    grids = {
+        name: simulation.parse_grid(name, text)
+        for name, text in {"mu": mu, "B": B, "bias": bias}.items()
+    }
+    with tqdm(unit=" energies", unit_scale=True, delay=1, desc="simulate") as bar:
+
+        def progress(done: int, in_all: int) -> None:
+            bar.total = in_all
+            bar.update(done)
+
+        result = simulation.simulate_wire(wire, grids, temperature, solver, progress)
+    write_dataset(result, output, provenance(" ".join(["landscape", *sys.argv[1:]])))
+    if plot is not None:
+        simulation.plot_simulation(result, plot)
+    print(f"wrote {output}" + (f" and {plot}" if plot else ""))
+
+
+@app.command()
+def generate(config: ConfigFile, build: Build = Path("build"), workers: Workers = 2) -> None:
+    """Make the dataset of a run; called again it makes what is missing.
+
+    Example: landscape generate --config configs/small.toml --workers 2
+    """
+    from disorder_landscape import chain
+
+    chain.generate(chain.open_run(config, build), workers)
+
+
+@app.command()
+def status(config: ConfigFile, build: Build = Path("build")) -> None:
+    """How much of a run is there.
+
+    Example: landscape status --config configs/small.toml
+    """
+    from disorder_landscape import chain
+    from disorder_landscape.dataset import shards
+
+    run = chain.open_run(config, build)
+    now = shards.status(run.config.dataset, run.dataset_folder)
+    print(
+        f"dataset     {now.realizations} of {now.realizations_in_all} realizations in "
+        f"{now.shards} of {now.shards_in_all} shards, {now.bytes / 1e6:.1f} MB"
+    )
+    trained = (run.model_folder / "metrics.json").exists()
+    begun = run.model_folder.exists()
+    print(f"model       {'trained' if trained else 'begun' if begun else 'not begun'}")
+    print(f"evaluation  {'there' if run.evaluation_file.exists() else 'not there'}")
+
+
+@app.command()
+def train(config: ConfigFile, build: Build = Path("build")) -> None:
+    """Train the network of a run; an interrupted training goes on where it was.
+
+    Example: landscape train --config configs/small.toml
+    """
+    from disorder_landscape import chain
+
+    chain.train(chain.open_run(config, build))
+
+
+@app.command()
+def evaluate(config: ConfigFile, build: Build = Path("build")) -> None:
+    """Score the network of a run on its test realizations.
+
+    Example: landscape evaluate --config configs/small.toml
+    """
+    from disorder_landscape import chain
+
+    run = chain.open_run(config, build)
+    scores = chain.evaluate(run).attrs
+    print(f"R2 (standard-scaled)  {scores['R2']:.4f}")
+    print(f"dV_dis(x_i)           {scores['delta_V']:.4f} meV")
+    if "delta_alpha" in scores:
+        print(f"d alpha               {scores['delta_alpha']:.4f} meV nm")
+    for name, value in scores.items():
+        if name.startswith("R2_"):
+            print(f"R2 of {name.removeprefix('R2_'):8s}        {value:.4f}")
+    print(f"wrote {run.evaluation_file}")
+
+
+@app.command()
+def predict(
+    measurement: Annotated[Path, typer.Argument(help="netCDF file with G_LL ... G_RL.")],
+    model: Annotated[Path, typer.Option(help="Folder of a trained model.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="netCDF file.")],
+) -> None:
+    """The network's guess of disorder and alpha from conductances on the model's grid.
+
+    Example: landscape predict wire.nc --model data_small/models/five_components_and_alpha -o Y.nc
+    """
+    from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
+    from disorder_landscape.learning.prediction import predict as predict_labels
+    from disorder_landscape.physics.transport import CONDUCTANCES
+
+    Y = predict_labels(model, read_dataset(measurement, CONDUCTANCES)[list(CONDUCTANCES)])
+    write_dataset(Y, output, provenance(" ".join(["landscape", *sys.argv[1:]])))
+    print(f"wrote {output}")
+
+
+@app.command()
+def bench(
+    repeats: Annotated[int, typer.Option(min=1, help="Measurements, of which the median.")] = 5,
+) -> None:
+    """Time the fast solver against Kwant at its best, in one run.
+
+    Example: landscape bench
+    """
+    from disorder_landscape.bench import measure
+
+    for line in measure(repeats):
+        print(line)

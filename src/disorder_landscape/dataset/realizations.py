@@ -1,0 +1,100 @@
+"""What one realization is: a wire drawn from the disorder model, and its conductances (S-II.1)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from disorder_landscape.config import DatasetConfig
+from disorder_landscape.physics.disorder import disorder_realization
+from disorder_landscape.physics.parameters import FloatArray, Nanowire
+from disorder_landscape.physics.transport import CONDUCTANCES, LONG_NAMES, conductance
+
+
+@dataclass(frozen=True, eq=False)
+class Realization:
+    """One Y: components c₁ … c_n (component) in meV, α in meV nm, V_dis(x) (site) in meV."""
+
+    components: FloatArray
+    alpha: float
+    potential: FloatArray
+
+    @property
+    def wire(self) -> Nanowire:
+        """The wire with this disorder and the paper's other parameters."""
+        return Nanowire(self.potential, alpha=self.alpha)
+
+
+def realization(config: DatasetConfig, index: int) -> Realization:
+    """Return realization number `index`, a function of (seed, index) and the disorder model alone."""
+    rng = np.random.default_rng([config.seed, index])
+    alpha = rng.uniform(*config.alpha_range)
+    components, potential = disorder_realization(
+        rng, config.components, config.sites, config.correlation_length, config.amplitude
+    )
+    return Realization(components, alpha, potential)
+
+
+def simulate(config: DatasetConfig, indices: Iterable[int]) -> xr.Dataset:
+    """Return the realizations with these indices and their conductances.
+
+    Each wire is solved by itself, so that the numbers do not depend on its neighbours.
+
+    Returns
+    -------
+    xarray.Dataset
+        G_LL, G_RR, G_LR, G_RL (realization, mu, B, bias) as float32 in e²/h, components
+        (realization, component) and potential (realization, site) in meV, alpha (realization) in
+        meV nm.
+    """
+    index = np.array(list(indices))
+    drawn = [realization(config, i) for i in index]
+    G = np.empty((len(drawn), config.mu_points, config.B_points, len(config.bias), 4), np.float32)
+    for i, one in enumerate(drawn):
+        of_wire = conductance(
+            one.wire,
+            config.mu,
+            config.B,
+            config.bias,
+            config.temperature,
+            energy_spacing=config.energy_spacing,
+        )
+        G[i] = np.stack([of_wire[name] for name in CONDUCTANCES], axis=-1)
+    dims = ("realization", "mu", "B", "bias")
+    dataset = xr.Dataset(
+        {
+            **{name: (dims, G[..., i]) for i, name in enumerate(CONDUCTANCES)},
+            "components": (
+                ("realization", "component"),
+                np.array([one.components for one in drawn]),
+                {"units": "meV", "long_name": "disorder components c_1 ... c_n"},
+            ),
+            "alpha": (
+                "realization",
+                np.array([one.alpha for one in drawn]),
+                {"units": "meV nm", "long_name": "spin-orbit coupling"},
+            ),
+            "potential": (
+                ("realization", "site"),
+                np.array([one.potential for one in drawn]),
+                {"units": "meV", "long_name": "disorder potential without barriers"},
+            ),
+        },
+        coords={
+            "realization": ("realization", index, {"units": "1", "long_name": "index"}),
+            "mu": config.mu,
+            "B": config.B,
+            "bias": np.array(config.bias),
+            "component": np.arange(1, config.components + 1),
+            "site": np.arange(config.sites),
+        },
+    )
+    for name, (long_name, units) in LONG_NAMES.items():
+        if name in dataset.variables:
+            dataset[name].attrs.update(long_name=long_name, units=units)
+    for name, long_name in {"component": "number n", "site": "lattice site"}.items():
+        dataset[name].attrs.update(long_name=long_name, units="1")
+    return dataset

@@ -1,0 +1,172 @@
+"""A dataset as a folder of shards: generate, resume, status, read.
+
+Shard k holds the realizations k·shard_size … of the dataset. It is written whole or not at all, and
+is a function of the configuration alone, so workers, order and restarts leave no trace in it.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from multiprocessing import get_context
+from pathlib import Path
+
+import xarray as xr
+
+from disorder_landscape.arguments import ArgumentError, require
+from disorder_landscape.config import DatasetConfig
+from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
+from disorder_landscape.physics.transport import CONDUCTANCES
+
+VARIABLES = (*CONDUCTANCES, "components", "alpha", "potential")
+Progress = Callable[[int], None]
+
+
+@dataclass(frozen=True)
+class Status:
+    """How much of a dataset is there: shards, realizations, bytes."""
+
+    shards: int
+    shards_in_all: int
+    realizations: int
+    realizations_in_all: int
+    bytes: int
+
+    @property
+    def complete(self) -> bool:
+        """Whether nothing is missing."""
+        return self.shards == self.shards_in_all
+
+
+def shard_path(folder: Path, shard: int) -> Path:
+    """Return the file of a shard."""
+    return folder / f"shard-{shard:05d}.nc"
+
+
+def shard_indices(config: DatasetConfig, shard: int) -> range:
+    """Return the indices of the realizations in a shard."""
+    first = shard * config.shard_size
+    return range(first, min(first + config.shard_size, config.realizations))
+
+
+def shard_count(config: DatasetConfig) -> int:
+    """Return the number of shards."""
+    return -(-config.realizations // config.shard_size)
+
+
+def make_shard(config: DatasetConfig, folder: Path, shard: int) -> int:
+    """Simulate and write one shard; return how many realizations it holds."""
+    from disorder_landscape.dataset.realizations import simulate
+
+    indices = shard_indices(config, shard)
+    attrs = {
+        **provenance("landscape generate"),
+        "config_hash": config.hash,
+        "config": config.model_dump_json(exclude={"realizations"}),
+        "seed": config.seed,
+        "first_index": indices.start,
+        "last_index": indices.stop - 1,
+    }
+    write_dataset(simulate(config, indices), shard_path(folder, shard), attrs)
+    return len(indices)
+
+
+def shard_is_done(config: DatasetConfig, folder: Path, shard: int) -> bool:
+    """Return whether a shard is there with at least the realizations that it needs.
+
+    Raises
+    ------
+    ArgumentError
+        If the file is damaged, or of another configuration: it is refused, never overwritten.
+    """
+    path = shard_path(folder, shard)
+    if not path.exists():
+        return False
+    try:
+        with xr.open_dataset(path, engine="h5netcdf") as file:
+            attrs, held = file.attrs, file.sizes.get("realization", 0)
+    except (OSError, ValueError, KeyError, RuntimeError):
+        must = "hold only whole shards"
+        raise ArgumentError("dataset", must, f"'{path}' is damaged; delete it") from None
+    same = attrs.get("config_hash") == config.hash
+    must = "be a folder of this configuration's shards"
+    require(same, "dataset", must, f"'{path}' was made with another configuration")
+    return held >= len(shard_indices(config, shard))
+
+
+def status(config: DatasetConfig, folder: Path) -> Status:
+    """Return how much of the dataset is there."""
+    shards = [k for k in range(shard_count(config)) if shard_is_done(config, folder, k)]
+    return Status(
+        shards=len(shards),
+        shards_in_all=shard_count(config),
+        realizations=sum(len(shard_indices(config, k)) for k in shards),
+        realizations_in_all=config.realizations,
+        bytes=sum(shard_path(folder, k).stat().st_size for k in shards),
+    )
+
+
+def generate(
+    config: DatasetConfig, folder: Path, workers: int = 1, progress: Progress = lambda done: None
+) -> None:
+    """Make the shards that are missing.
+
+    Parameters
+    ----------
+    config : DatasetConfig
+    folder : Path
+        Where the shards are.
+    workers : int
+        Processes, each with one thread.
+    progress : callable
+        Told the number of realizations of every shard that is made.
+
+    Raises
+    ------
+    ArgumentError
+        If the folder holds shards of another configuration or cannot be written; every shard made
+        until then stays.
+    """
+    missing = [k for k in range(shard_count(config)) if not shard_is_done(config, folder, k)]
+    if workers == 1 or len(missing) < 2:
+        for shard in missing:
+            progress(make_shard(config, folder, shard))
+        return
+    with ProcessPoolExecutor(workers, get_context("spawn"), _one_thread) as pool:
+        futures = [pool.submit(make_shard, config, folder, shard) for shard in missing]
+        try:
+            for future in as_completed(futures):
+                progress(future.result())
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+
+
+def _one_thread() -> None:
+    """Keep a worker to one thread."""
+    import numba
+
+    numba.set_num_threads(1)
+    os.environ.update(OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1")
+
+
+def read_shards(config: DatasetConfig, folder: Path) -> xr.Dataset:
+    """Read the whole dataset into memory.
+
+    Raises
+    ------
+    ArgumentError
+        If a shard is missing, damaged or of another configuration.
+    """
+    now = status(config, folder)
+    must = f"hold {now.realizations_in_all} realizations (run `landscape generate`)"
+    require(now.complete, "dataset", must, f"'{folder}' holds {now.realizations}")
+    parts = [
+        read_dataset(shard_path(folder, k), VARIABLES).isel(
+            realization=slice(len(shard_indices(config, k)))
+        )
+        for k in range(shard_count(config))
+    ]
+    return xr.concat(parts, "realization", data_vars="minimal", combine_attrs="drop_conflicts")

@@ -1,0 +1,70 @@
+"""NetCDF in and out, with provenance and with checks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from importlib.metadata import version
+from pathlib import Path
+
+import h5py
+import numpy as np
+import xarray as xr
+
+from disorder_landscape.arguments import ArgumentError, require
+from disorder_landscape.files import replacing
+
+PACKAGES = ("disorder-landscape", "numpy", "scipy", "numba", "xarray", "h5netcdf")
+
+
+def provenance(command: str) -> dict[str, str]:
+    """Return the attributes that tell how a file was made: the command and package versions."""
+    return {"command": command, **{f"version_{name}": version(name) for name in PACKAGES}}
+
+
+def write_dataset(dataset: xr.Dataset, path: Path, attrs: Mapping[str, object]) -> None:
+    """Write a netCDF4 file with these further attributes; it appears whole or not at all.
+
+    Raises
+    ------
+    ArgumentError
+        If a number in it is not finite, the folder cannot be written, or the disk is full.
+    """
+    for name, variable in dataset.variables.items():
+        if np.issubdtype(variable.dtype, np.floating):
+            bad = int((~np.isfinite(variable.to_numpy())).sum())
+            require(bad == 0, "dataset", "be finite", f"{name} has {bad} numbers that are not")
+    with replacing(path) as temporary:
+        _create_without_times(temporary)
+        dataset.assign_attrs(attrs).to_netcdf(temporary, mode="a", engine="h5netcdf")
+
+
+def _create_without_times(path: Path) -> None:
+    """Create an empty netCDF4 file without HDF5's times, so that equal content is equal bytes."""
+    creation = h5py.h5p.create(h5py.h5p.FILE_CREATE)
+    creation.set_obj_track_times(False)
+    in_order = h5py.h5p.CRT_ORDER_TRACKED | h5py.h5p.CRT_ORDER_INDEXED
+    creation.set_link_creation_order(in_order)
+    creation.set_attr_creation_order(in_order)
+    h5py.h5f.create(str(path).encode(), h5py.h5f.ACC_TRUNC, fcpl=creation).close()
+
+
+def read_dataset(path: str | Path, variables: Iterable[str] = ()) -> xr.Dataset:
+    """Read a whole netCDF file into memory.
+
+    Raises
+    ------
+    ArgumentError
+        If it is missing, truncated, not netCDF, or lacks one of the variables.
+    """
+    must = "be a netCDF file of this program"
+    try:
+        with xr.open_dataset(path, engine="h5netcdf") as file:
+            dataset = file.load()
+    except FileNotFoundError:
+        raise ArgumentError("file", must, f"there is no '{path}'") from None
+    except (OSError, ValueError, KeyError, RuntimeError) as error:
+        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        raise ArgumentError("file", must, f"'{path}' cannot be read: {reason}") from None
+    missing = [name for name in variables if name not in dataset.variables]
+    require(not missing, "file", must, f"'{path}' lacks {', '.join(missing)}")
+    return dataset

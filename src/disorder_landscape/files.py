@@ -1,0 +1,71 @@
+"""Files and folders that are either whole or not there, and JSON files."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from disorder_landscape.arguments import ArgumentError
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """Give a temporary path beside `path` to write to, and rename it to `path` in the end.
+
+    What is written may be a file or a folder.
+
+    Raises
+    ------
+    ArgumentError
+        If the folder cannot be written, or the disk is full; nothing is left behind then.
+    """
+    temporary = path.with_name(f".writing-{path.name}")  # the suffix stays: Keras looks at it
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        _remove(temporary)  # left by a run that was killed
+        yield temporary
+        temporary.replace(path)
+    except (OSError, RuntimeError) as error:  # HDF5 says RuntimeError when a disk is full
+        reason = getattr(error, "strerror", None) or str(error).splitlines()[0]
+        but = f"'{path}' cannot be written ({reason})"
+        raise ArgumentError("folder", "be a place to write to", but) from None
+    finally:
+        _remove(temporary)
+
+
+def _remove(path: Path) -> None:
+    if path.is_dir():
+        shutil.rmtree(path)
+    else:
+        path.unlink(missing_ok=True)
+
+
+def write_json(path: Path, content: Mapping[str, Any]) -> None:
+    """Write a JSON file; floats are written so that reading gives the same bits."""
+    with replacing(path) as temporary:
+        temporary.write_text(json.dumps(content, indent=1, ensure_ascii=False) + "\n", "utf-8")
+
+
+def read_json(path: Path) -> dict[str, Any]:
+    """Read a JSON file that holds an object.
+
+    Raises
+    ------
+    ArgumentError
+        If it cannot be read or holds something else.
+    """
+    must = "be a folder written by `landscape train`"
+    try:
+        content = json.loads(path.read_text("utf-8"))
+    except OSError as error:
+        but = f"'{path}' cannot be read ({error.strerror})"
+        raise ArgumentError("model", must, but) from None
+    except ValueError as error:
+        raise ArgumentError("model", must, f"'{path}' is not JSON: {error}") from None
+    if not isinstance(content, dict):
+        raise ArgumentError("model", must, f"'{path}' holds no JSON object")
+    return content

@@ -1,0 +1,145 @@
+"""What `landscape simulate` does: a potential from a file, conductance and T_IV into one, a plot."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from disorder_landscape.arguments import ArgumentError, require
+from disorder_landscape.dataset.store import read_dataset
+from disorder_landscape.files import replacing
+from disorder_landscape.physics.parameters import FloatArray, Nanowire, checked_potential
+from disorder_landscape.physics.transport import (
+    CONDUCTANCES,
+    Progress,
+    conductance,
+    topological_visibility,
+)
+
+
+def read_potential(path: Path, sites: int) -> FloatArray:
+    """Read V_dis(x) in meV from a file.
+
+    Parameters
+    ----------
+    path : Path
+        .npy (a vector), .nc (the variable potential), or text with one site per line, the potential
+        in the last comma-separated column, with or without a header line.
+    sites : int
+        Number of sites it must have.
+
+    Raises
+    ------
+    ArgumentError
+        If the file cannot be read as that, or holds another number of sites or NaN.
+    """
+    must = "be a .csv, .npy or .nc file of one potential value in meV per site"
+    if path.suffix == ".nc":
+        V = read_dataset(path, ["potential"])["potential"].to_numpy()
+    else:
+        try:
+            V = np.load(path, allow_pickle=False) if path.suffix == ".npy" else _read_text(path)
+        except FileNotFoundError:
+            raise ArgumentError("potential", must, f"there is no '{path}'") from None
+        except (OSError, ValueError, EOFError) as error:
+            reason = str(error).splitlines()[0]
+            raise ArgumentError("potential", must, f"'{path}' is not: {reason}") from None
+    return checked_potential(V, sites)
+
+
+def _read_text(path: Path) -> FloatArray:
+    lines = path.read_text("utf-8").splitlines()
+    rows = [line.split(",")[-1].strip() for line in lines if line.strip()]
+    try:
+        return np.array([float(row) for row in rows])
+    except ValueError:
+        return np.array([float(row) for row in rows[1:]])  # the first line is a header
+
+
+def parse_grid(name: str, text: str) -> FloatArray:
+    """Return the grid that "0.3", "0,0.1,0.4" or "start:stop:points" describes.
+
+    Raises
+    ------
+    ArgumentError
+        If the text is something else.
+    """
+    try:
+        if ":" in text:
+            start, stop, points = text.split(":")
+            return np.linspace(float(start), float(stop), int(points))
+        return np.array([float(part) for part in text.split(",")])
+    except ValueError:
+        must = "be a number, a list like 0,0.1 or a range like start:stop:points"
+        raise ArgumentError(name, must, f"it is '{text}'") from None
+
+
+def simulate_wire(
+    wire: Nanowire,
+    grids: Mapping[str, FloatArray],
+    temperature: float,
+    solver: str,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Return conductance, T_IV and potential of a wire in one dataset.
+
+    Parameters
+    ----------
+    wire : Nanowire
+    grids : mapping
+        mu in meV, B in T, bias in meV.
+    temperature : float
+        In K.
+    solver : {"fast", "kwant"}
+    progress : callable, optional
+        As in `conductance`.
+    """
+    result = conductance(wire, **grids, temperature=temperature, solver=solver, progress=progress)
+    result["T_IV"] = topological_visibility(wire, grids["mu"], grids["B"], solver=solver)
+    result["potential"] = (
+        "site",
+        wire.potential,
+        {"units": "meV", "long_name": "disorder potential without barriers"},
+    )
+    for name in ("alpha", "mass", "lattice", "g", "gamma", "delta0", "barrier", "lead_mu"):
+        result.attrs[name] = getattr(wire, name)
+    return result
+
+
+def plot_simulation(result: xr.Dataset, path: Path) -> None:
+    """Draw a quick look: each conductance, as a map or a curve over the two longest axes.
+
+    Raises
+    ------
+    ArgumentError
+        If the file's ending is no picture format, or it cannot be written.
+    """
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    from matplotlib import pyplot as plt
+
+    formats = plt.figure().canvas.get_supported_filetypes()
+    plt.close()
+    ending = path.suffix.removeprefix(".")
+    require(ending in formats, "plot", f"end in one of {', '.join(formats)}", f"it is '{path}'")
+    axes = sorted(("mu", "B", "bias"), key=lambda name: result.sizes[name])
+    shown = result.isel({axes[0]: result.sizes[axes[0]] // 2})
+    y, x = sorted(axes[1:], key=["bias", "mu", "B"].index)
+    figure, panels = plt.subplots(1, 4, figsize=(12, 3), layout="constrained")
+    for panel, name in zip(panels, CONDUCTANCES, strict=True):
+        G = shown[name]
+        if shown.sizes[y] == 1 or shown.sizes[x] == 1:
+            G.plot.line("k.-", x=x if shown.sizes[y] == 1 else y, ax=panel)
+        elif name in ("G_LL", "G_RR"):
+            G.plot.pcolormesh(x=x, y=y, ax=panel, vmin=0, cmap="viridis")
+        else:
+            G.plot.pcolormesh(x=x, y=y, ax=panel, cmap="RdBu_r", vmax=float(abs(G).max()) or 1.0)
+        panel.set_title("")
+    figure.suptitle(f"{axes[0]} = {float(shown[axes[0]]):.3g} {result[axes[0]].attrs['units']}")
+    with replacing(path) as temporary:
+        figure.savefig(temporary, dpi=150)
+    plt.close(figure)
