@@ -1,0 +1,80 @@
+# The one front for everything.  `make` lists the targets; each first makes .venv where it is missing.
+
+# Which run: the name of a file in configs/, or "shipped" for the data and the model in data_small/.
+PRESET ?= small
+
+# The processes of a pool share the cores already; training sets its own number of threads.
+export OMP_NUM_THREADS ?= 1
+export OPENBLAS_NUM_THREADS ?= 1
+export MKL_NUM_THREADS ?= 1
+unexport PYTHONPATH PYTHONHOME
+
+# .venv is as it should be where it has this file.  Its name is made of the content of what set-up
+# reads, because the times of files say nothing after a clone or a copy into a container.
+SET_UP_FROM := requirements.lock requirements-uv.lock requirements-zig.lock pyproject.toml scripts/set_up.sh
+READY := .venv/ready-$(firstword $(shell cat $(SET_UP_FROM) | sha256sum))
+
+PYTHON_HERE := .venv/bin/python
+LANDSCAPE := .venv/bin/landscape
+CONFIG := configs/$(PRESET).toml
+
+SCRIPTS := $(sort $(wildcard paper_figures/figure_*.py))
+FIGURES := $(foreach script,$(SCRIPTS),figure-$(word 2,$(subst _, ,$(notdir $(script)))))
+TRAINED_FIGURES := $(filter figure-3 figure-4 figure-5 figure-S5 figure-S7,$(FIGURES))
+
+COMPILE := .venv/bin/uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url --quiet
+
+STARTED := $(shell date +%s)
+
+.PHONY: help setup generate train evaluate figures $(FIGURES) bench test lint lock clean
+.SUFFIXES:
+
+help: ## list the targets
+	@echo 'make TARGET [PRESET=small|shipped|smoke|paper] [PYTHON=/path/to/python3]'
+	@sed -n 's/^\([a-z]*\):.*## /  \1\t/p' Makefile | expand -t 13
+	@echo 'and one figure each: $(FIGURES)'
+
+setup: $(READY) ## make .venv from requirements.lock (a few minutes, once; the others do it themselves)
+
+$(READY):
+	@sh scripts/set_up.sh $@
+
+figures: $(FIGURES) ## every figure of the paper into build/figures, from dataset and training on
+	@echo "make figures: done in $$(($$(date +%s) - $(STARTED))) s (PRESET=$(PRESET)), see build/figures"
+
+$(FIGURES): figure-%: $(READY)
+	$(PYTHON_HERE) $(wildcard paper_figures/figure_$*_*.py) --preset $(PRESET)
+
+# Dataset and training are resumed, or left as they are where they are complete.
+ifneq ($(PRESET),shipped)
+figures: evaluate
+$(TRAINED_FIGURES): train
+endif
+
+generate: $(READY) ## simulate the dataset of PRESET
+	$(LANDSCAPE) generate --config $(CONFIG)
+
+train: generate ## train the network on it
+	$(LANDSCAPE) train --config $(CONFIG)
+
+evaluate: train ## score the network on its test realizations
+	$(LANDSCAPE) evaluate --config $(CONFIG)
+
+bench: $(READY) ## time the fast solver against Kwant
+	$(LANDSCAPE) bench
+
+test: $(READY) ## run the tests
+	$(PYTHON_HERE) -m pytest -n 2
+
+lint: $(READY) ## check style and types
+	.venv/bin/ruff check .
+	.venv/bin/ruff format --check .
+	.venv/bin/mypy
+
+lock: $(READY) ## resolve the versions of the requirements*.lock anew, from pyproject.toml
+	$(COMPILE) --extra dev -o requirements.lock pyproject.toml
+	echo uv | $(COMPILE) -o requirements-uv.lock -
+	echo ziglang | $(COMPILE) -o requirements-zig.lock -
+
+clean: ## remove what runs have made (build), not .venv
+	rm -rf build
