@@ -1,0 +1,148 @@
+"""The two solvers, written independently, agree."""
+
+import numpy as np
+import pytest
+from conftest import energies, fields, mus, random_wire, seeds
+from hypothesis import example, given, settings
+from numpy.testing import assert_allclose
+from scipy.optimize import brentq
+
+from disorder_landscape import Nanowire, conductance, topological_visibility
+from disorder_landscape.physics import fast_solver, hamiltonian, kwant_solver, leads
+
+
+def both(wire, mu, B, omega):
+    arguments = [wire], np.array([mu]), np.array([B]), np.array([omega])
+    return fast_solver.bare_conductance(*arguments), kwant_solver.bare_conductance(*arguments)
+
+
+@settings(max_examples=150)
+@given(seeds, mus, fields, energies)
+@example(0, 0.0, 0.0, 0.0)
+@example(3, 0.0, 0.5, 0.0)
+@example(4, 0.6, 0.8, 0.11)
+def test_conductances_agree(seed, mu, B, omega):
+    fast, kwant = both(random_wire(seed), mu, B, omega)
+    assert_allclose(fast, kwant, atol=1e-8, rtol=0)
+
+
+@pytest.mark.slow
+def test_ten_thousand_random_conductances_agree():
+    rng = np.random.default_rng(7)
+    worst = np.empty(10_000)
+    for i in range(worst.size):
+        fast, kwant = both(
+            random_wire(i), rng.uniform(0, 0.6), rng.uniform(0, 0.8), rng.uniform(0, 0.11)
+        )
+        worst[i] = abs(fast - kwant).max()
+    print(f"largest {worst.max():.2e}, {np.mean(worst < 1e-9):.3%} below 1e-9 e²/h")
+    assert worst.max() < 1e-6
+    assert np.mean(worst < 1e-9) >= 0.999
+
+
+@settings(max_examples=30)
+@given(seeds, mus, fields)
+def test_visibilities_agree(seed, mu, B):
+    wire = random_wire(seed)
+    fast = topological_visibility(wire, mu, B)
+    kwant = topological_visibility(wire, mu, B, solver="kwant")
+    assert_allclose(fast, kwant, atol=1e-7)
+
+
+@settings(max_examples=30)
+@given(seeds, mus, fields, energies)
+def test_leads_and_wires_of_other_parameters_agree(seed, mu, B, omega):
+    rng = np.random.default_rng(seed)
+    wire = Nanowire(
+        rng.normal(0, 0.5, rng.integers(2, 40)),
+        alpha=rng.choice([0.0, rng.uniform(0, 30)]),
+        g=rng.choice([0.0, rng.uniform(0, 50)]),
+        mass=rng.uniform(0.01, 0.1),
+        lattice=rng.uniform(5, 20),
+        gamma=rng.uniform(0.0, 0.3),
+        barrier=tuple(rng.uniform(-5, 30, 2)),
+        lead_mu=rng.uniform(1, 40),
+        lead_alpha=rng.choice([0.0, rng.uniform(0, 30)]),
+        lead_g=rng.uniform(0, 50),
+    )
+    fast, kwant = both(wire, mu, B, omega)
+    assert_allclose(fast, kwant, atol=1e-7)
+
+
+@pytest.mark.parametrize(("alpha", "B"), [(8.0, 0.4), (8.0, 0.0), (0.0, 0.4), (0.0, 0.0)])
+@pytest.mark.parametrize("lead_mu", [25.0, 0.2])
+def test_lead_self_energies_are_those_of_kwant(alpha, B, lead_mu):
+    wire = Nanowire(np.zeros(2), alpha=alpha, lead_mu=lead_mu)
+    system = kwant_solver.build_system(wire)
+    for omega in (0.0, 0.03):
+        sigma = leads.lead_self_energies(wire, B, np.array([omega]))[0]
+        for lead in (0, 1):
+            expected = system.leads[lead].selfenergy(omega, params={"B": B})
+            ours = np.zeros((4, 4), dtype=complex)
+            ours[:2, :2], ours[2:, 2:] = sigma[lead]
+            assert_allclose(ours, expected, atol=1e-9)
+            assert_allclose(ours, ours.T, atol=1e-10)
+
+
+def level_of_the_inner_sites(wire, mu, B):
+    """Return an ω > 0 at which ω − H(ω) without the two end sites is singular."""
+
+    def levels(omega):
+        H = hamiltonian.wire_hamiltonian(wire, mu, B, omega)[4:-4, 4:-4].real
+        return np.linalg.eigvalsh(H) - omega
+
+    grid = np.linspace(1e-4, 0.1, 101)
+    below = np.array([(levels(omega) < 0).sum() for omega in grid])
+    k = np.flatnonzero(np.diff(below))[0]
+    level = min(below[k], below[k + 1])
+    return brentq(lambda omega: levels(omega)[level], grid[k], grid[k + 1], xtol=1e-15)
+
+
+def test_a_level_at_the_energy_switches_to_pivoted_elimination():
+    """A level of the eliminated piece at ω ruins the real elimination; pivoting saves it."""
+    wire = Nanowire(np.random.default_rng(5).normal(0, 0.5, 40))
+    mu, B = 0.1, 0.5
+    omega = level_of_the_inner_sites(wire, mu, B)
+    arguments = [wire], np.array([mu]), np.array([B]), np.array([omega])
+    trusting = fast_solver.bare_conductance(*arguments, growth_limit=np.inf)
+    checked = fast_solver.bare_conductance(*arguments)
+    kwant = kwant_solver.bare_conductance(*arguments)
+    assert abs(trusting - kwant).max() > 1e-6  # so the check is needed here
+    assert_allclose(checked, kwant, atol=1e-9)
+
+
+@settings(max_examples=20)
+@given(seeds, mus, fields, energies)
+def test_pivoted_elimination_agrees_everywhere(seed, mu, B, omega):
+    arguments = [random_wire(seed)], np.array([mu]), np.array([B]), np.array([omega])
+    pivoted = fast_solver.bare_conductance(*arguments, growth_limit=0.0)
+    assert_allclose(pivoted, fast_solver.bare_conductance(*arguments), atol=1e-8)
+
+
+def test_lanes_and_threads_leave_no_trace():
+    """A grid gives the very bits that its points give one by one, on any number of threads."""
+    import numba
+
+    wires = [random_wire(i) for i in range(3)]
+    mu, B, omega = np.linspace(0, 0.6, 5), np.array([0.1, 0.7]), np.linspace(0, 0.1, 7)
+    grid = fast_solver.bare_conductance(wires, mu, B, omega)
+    for index in np.ndindex(3, 5, 2, 7):
+        w, i, j, k = index
+        point = fast_solver.bare_conductance([wires[w]], mu[i : i + 1], B[j : j + 1], omega[k : k + 1])
+        np.testing.assert_array_equal(grid[index], point[0, 0, 0, 0])
+    threads = numba.get_num_threads()
+    numba.set_num_threads(1)
+    try:
+        alone = fast_solver.bare_conductance(wires, mu, B, omega)
+    finally:
+        numba.set_num_threads(threads)
+    np.testing.assert_array_equal(grid, alone)
+
+
+def test_finite_temperature_is_the_same_average_for_both_solvers():
+    wire = random_wire(8, sites=40)
+    arguments = dict(mu=[0.1], B=[0.3, 0.6], bias=[-0.02, 0.0, 0.03], energy_spacing=0.02)
+    fast = conductance(wire, **arguments)
+    kwant = conductance(wire, **arguments, solver="kwant")
+    for name in fast.data_vars:
+        assert_allclose(fast[name], kwant[name], atol=1e-10)
