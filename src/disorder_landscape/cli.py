@@ -76,6 +76,8 @@ def simulate(
     from disorder_landscape.physics.disorder import disorder_realization
     from disorder_landscape.physics.parameters import Nanowire
 
+    if plot is not None:
+        simulation.check_plot(plot)
     both = "one of --potential and --seed at most"
     require(potential is None or seed is None, "potential", f"come with {both}", "both are given")
     require(sites >= 2, "sites", "be 2 or more", f"it is {sites}")

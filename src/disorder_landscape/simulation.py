@@ -109,23 +109,28 @@ def simulate_wire(
     return result
 
 
+def check_plot(path: Path) -> None:
+    """Raise an ArgumentError unless the file's ending is one that matplotlib can draw."""
+    from matplotlib.backend_bases import FigureCanvasBase
+
+    formats = FigureCanvasBase.get_supported_filetypes()
+    must = f"end in one of {', '.join(formats)}"
+    require(path.suffix.removeprefix(".") in formats, "plot", must, f"it is '{path}'")
+
+
 def plot_simulation(result: xr.Dataset, path: Path) -> None:
     """Draw a quick look: each conductance, as a map or a curve over the two longest axes.
 
     Raises
     ------
     ArgumentError
-        If the file's ending is no picture format, or it cannot be written.
+        If the file cannot be written.
     """
     import matplotlib as mpl
 
     mpl.use("Agg")
     from matplotlib import pyplot as plt
 
-    formats = plt.figure().canvas.get_supported_filetypes()
-    plt.close()
-    ending = path.suffix.removeprefix(".")
-    require(ending in formats, "plot", f"end in one of {', '.join(formats)}", f"it is '{path}'")
     axes = sorted(("mu", "B", "bias"), key=lambda name: result.sizes[name])
     shown = result.isel({axes[0]: result.sizes[axes[0]] // 2})
     y, x = sorted(axes[1:], key=["bias", "mu", "B"].index)

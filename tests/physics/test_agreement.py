@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from conftest import energies, fields, mus, random_wire, seeds
+from random_wires import energies, fields, mus, random_wire, seeds
 from hypothesis import example, given, settings
 from numpy.testing import assert_allclose
 from scipy.optimize import brentq

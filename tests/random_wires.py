@@ -1,4 +1,4 @@
-"""Shared pieces of the tests: random wires."""
+"""Random wires and random points, for hypothesis."""
 
 from __future__ import annotations
 

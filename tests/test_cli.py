@@ -1,0 +1,161 @@
+"""The command line: what it writes, and one sentence for whatever it cannot use."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from disorder_landscape import Nanowire, conductance
+from disorder_landscape.cli import main
+
+SMALL = ["--sites", "30", "--B", "0:0.8:5", "--bias", "-0.02,0,0.02"]
+
+
+def landscape(monkeypatch, capsys, *arguments):
+    """Return exit code, standard output and standard error of a command."""
+    monkeypatch.setattr(sys, "argv", ["landscape", *map(str, arguments)])
+    with pytest.raises(SystemExit) as stop:
+        main()
+    said = capsys.readouterr()
+    return stop.value.code, said.out, said.err
+
+
+@pytest.mark.parametrize("ending", ["csv", "npy", "nc"])
+def test_simulate_reads_a_potential_and_writes_what_the_library_says(
+    monkeypatch, capsys, tmp_path, ending
+):
+    V = np.random.default_rng(0).normal(0, 0.3, 30)
+    potential, output = tmp_path / f"V.{ending}", tmp_path / "wire.nc"
+    if ending == "csv":
+        rows = [f"{10 * i},{value!r}" for i, value in enumerate(V.tolist())]
+        potential.write_text("x (nm),V (meV)\n" + "\n".join(rows))
+    elif ending == "npy":
+        np.save(potential, V)
+    else:
+        xr.Dataset({"potential": ("site", V)}).to_netcdf(potential, engine="h5netcdf")
+    arguments = ["--potential", potential, *SMALL, "--mu", "0:0.6:3", "--alpha", 7, "-o", output]
+    plot = tmp_path / "wire.png"
+    code, out, err = landscape(monkeypatch, capsys, "simulate", *arguments, "--plot", plot)
+    assert code == 0, err
+    assert str(output) in out
+    assert plot.read_bytes().startswith(b"\x89PNG")
+    expected = conductance(
+        Nanowire(V, alpha=7), np.linspace(0, 0.6, 3), np.linspace(0, 0.8, 5), [-0.02, 0, 0.02]
+    )
+    with xr.open_dataset(output, engine="h5netcdf") as written:
+        for name in expected.data_vars:
+            np.testing.assert_array_equal(written[name], expected[name])
+        assert written.T_IV.dims == ("lead", "mu", "B")
+        assert written.attrs["alpha"] == 7
+        assert written.attrs["command"].startswith("landscape simulate --potential")
+
+
+def test_simulate_draws_the_same_potential_for_the_same_seed(monkeypatch, capsys, tmp_path):
+    for name in ("a.nc", "b.nc"):
+        landscape(monkeypatch, capsys, "simulate", "--seed", 3, *SMALL, "-o", tmp_path / name)
+    a, b = (xr.load_dataset(tmp_path / n, engine="h5netcdf") for n in ("a.nc", "b.nc"))
+    xr.testing.assert_equal(a, b)
+    assert a.potential.std() > 0.05
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (["--alpha", "-1"], "Argument alpha must be a number from 0 to 100 meV nm, but it is -1."),
+        (["--alpha", "nan"], "Argument alpha must"),
+        (["--g", "1000"], "Argument g must be a number from 0 to 100, but it is 1000."),
+        (["--temperature", "-0.1"], "Argument temperature must"),
+        (["--temperature", "2"], "Argument temperature must keep |bias| + 10 kT below the gap"),
+        (["--bias", "0.13", "--temperature", "0"], "Argument bias must lie between"),
+        (["--bias", "0.1,0.0"], "Argument bias must be a number or an increasing list"),
+        (["--mu", ""], "Argument mu must be a number, a list"),
+        (["--mu", "0:1:0"], "Argument mu must be a number or an increasing list"),
+        (["--B", "x"], "Argument B must be a number, a list"),
+        (["--solver", "magic"], "Argument solver must be 'fast' or 'kwant'"),
+        (["--sites", "1"], "Argument sites must be 2 or more, but it is 1."),
+        (["--components", "400"], "Argument components must be from 0 to 299, but it is 400."),
+        (["--potential", "no.csv"], "there is no 'no.csv'"),
+        (["--potential", "words.csv"], "Argument potential must be a .csv, .npy or .nc file"),
+        (["--potential", "short.csv"], "Argument potential must have 300 sites, but it has 2."),
+        (["--potential", "nan.csv"], "Argument potential must be finite"),
+        (["--potential", "broken.npy"], "Argument potential must be a .csv, .npy or .nc file"),
+        (["--potential", "broken.nc"], "Argument file must be a netCDF file"),
+        (["--potential", "foreign.nc"], "lacks potential"),
+        (["--potential", "short.csv", "--seed", "1"], "both are given"),
+        (["--plot", "picture.xyz"], "Argument plot must end in one of"),
+        (["--output", "words.csv/x.nc"], "Argument folder must be a place to write to"),
+    ],
+)
+def test_bad_input_is_one_sentence(monkeypatch, capsys, tmp_path, options, says):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "words.csv").write_text("V\nfirst\nsecond\n")
+    (tmp_path / "short.csv").write_text("0.1\n0.2\n")
+    (tmp_path / "nan.csv").write_text("\n".join(["nan"] * 300))
+    (tmp_path / "broken.npy").write_bytes(b"\x93NUMPY\x01")
+    (tmp_path / "broken.nc").write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(100))
+    xr.Dataset({"x": 1.0}).to_netcdf(tmp_path / "foreign.nc", engine="h5netcdf")
+    before = sorted(tmp_path.iterdir())
+    code, out, err = landscape(monkeypatch, capsys, "simulate", *options)
+    assert code == 2
+    assert says in err
+    assert err.count("\n") == 1
+    assert out == ""
+    assert sorted(tmp_path.iterdir()) == before
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("[dataset]\nrealisations = 3\n", "the key dataset.realizations"),
+        ("[dataset]\nrealizations = 3\nspeed = 1\n", "the unknown key dataset.speed"),
+        ("[dataset]\nrealizations = -3\n", "dataset.realizations is wrong"),
+        ("[dataset]\nrealizations = 3\nbias = []\n", "bias must be a non-empty"),
+        ("[dataset", "be a TOML file"),
+        (None, "be a readable TOML file"),
+    ],
+)
+@pytest.mark.parametrize("command", ["generate", "status", "train", "evaluate"])
+def test_bad_configurations_are_one_sentence(monkeypatch, capsys, tmp_path, command, text, says):
+    config = tmp_path / "run.toml"
+    if text is not None:
+        config.write_text(text)
+    code, _, err = landscape(
+        monkeypatch, capsys, command, "--config", config, "--build", tmp_path / "build"
+    )
+    assert code == 2
+    assert says in err
+    assert err.startswith("landscape: Argument config must")
+    assert not (tmp_path / "build").exists()
+
+
+def test_training_without_a_dataset_says_what_to_run(monkeypatch, capsys, tmp_path):
+    code, _, err = landscape(
+        monkeypatch, capsys, "train", "--config", "configs/smoke.toml", "--build", tmp_path
+    )
+    assert code == 2
+    assert "run `landscape generate`" in err
+
+
+def test_a_folder_that_cannot_be_made_is_one_sentence(monkeypatch, capsys, tmp_path):
+    (tmp_path / "file").write_text("")
+    config = ["--config", "configs/smoke.toml", "--build", tmp_path / "file", "--workers", 1]
+    code, _, err = landscape(monkeypatch, capsys, "generate", *config)
+    assert code == 2
+    assert "landscape: Argument folder must be a place to write to" in err
+
+
+def test_every_command_helps_with_an_example(monkeypatch, capsys):
+    commands = ["simulate", "generate", "status", "train", "evaluate", "predict", "bench"]
+    for command in commands:
+        code, out, _ = landscape(monkeypatch, capsys, command, "--help")
+        assert code == 0
+        assert f"Example: landscape {command}" in out
+    code, out, _ = landscape(monkeypatch, capsys, "--help")
+    assert all(command in out for command in commands)
+
+
+def test_the_command_line_does_not_import_tensorflow():
+    script = "import sys, disorder_landscape.cli, disorder_landscape.chain\nassert 'tensorflow' not in sys.modules"
+    subprocess.run([sys.executable, "-c", script], check=True)
