@@ -1,0 +1,1 @@
+"""The network: what it sees, how it is trained, what it predicts."""

@@ -1,0 +1,149 @@
+"""A trained network with everything it needs to be used, and the folder that holds it.
+
+The folder: network.keras (weights and layers), scaler.json, config.json (the run's configuration,
+the dataset it was trained on and package versions), metrics.json (scores; written last, it marks a
+finished training), curves.csv with curves.pdf and curves.png.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from zipfile import BadZipFile
+
+import numpy as np
+import xarray as xr
+from pydantic import ValidationError
+
+from disorder_landscape.arguments import ArgumentError, require
+from disorder_landscape.config import Config, DatasetConfig
+from disorder_landscape.files import read_json, replacing, write_json
+from disorder_landscape.learning.backend import import_keras
+from disorder_landscape.learning.mirror import mirrored_conductance, mirrored_labels
+from disorder_landscape.learning.scaling import (
+    AXES,
+    ConductanceArray,
+    InputScaler,
+    LabelScaler,
+)
+from disorder_landscape.physics.parameters import FloatArray
+
+NETWORK, SCALER, CONFIG, METRICS = "network.keras", "scaler.json", "config.json", "metrics.json"
+
+_MODEL = "be a folder written by `landscape train`"
+
+
+@dataclass(frozen=True, eq=False)
+class TrainedModel:
+    """A network, its scalers, and the configuration that tells its grid and its labels."""
+
+    network: Any
+    labels: LabelScaler
+    inputs: InputScaler | None
+    """None where the network sees the conductance itself."""
+    config: Config
+
+    def predict_labels(self, X: ConductanceArray) -> FloatArray:
+        """Return the labels in meV and meV nm that the network predicts.
+
+        With `config.training.mirror` it is the mean of what the network says about the wire and of
+        what it says, mirrored back, about the wire's mirror image.
+
+        Parameters
+        ----------
+        X : array, shape (realization, mu, B, bias, channel)
+            In e²/h, as `scaling.conductance_array` gives it.
+
+        Returns
+        -------
+        array, shape (realization, label)
+        """
+        Y = self._predict(X)
+        if self.config.training.mirror:
+            other = self._predict(mirrored_conductance(X))
+            Y = (Y + mirrored_labels(other, self.labels.components)) / 2
+        return Y
+
+    def scale_inputs(self, X: ConductanceArray) -> ConductanceArray:
+        """Return what goes into the network for conductances in e²/h, shape as X."""
+        return X if self.inputs is None else self.inputs.scale(X)
+
+    def _predict(self, X: ConductanceArray) -> FloatArray:
+        x, batch = self.scale_inputs(X), self.config.training.batch_size
+        starts = range(0, len(x), batch)
+        y = [self.network.predict_on_batch(x[start : start + batch]) for start in starts]
+        return self.labels.unscale(np.concatenate(y).astype(np.float64))
+
+    def save(self, folder: Path) -> None:
+        """Write network.keras, without the optimizer's state, and scaler.json."""
+        inputs = None if self.inputs is None else self.inputs.to_dict()
+        write_json(folder / SCALER, {"labels": self.labels.to_dict(), "inputs": inputs})
+        network = import_keras().Model(self.network.inputs, self.network.outputs)  # not compiled
+        save_network(network, folder / NETWORK)
+
+
+def check_grid(G: xr.Dataset, config: DatasetConfig, name: str = "G") -> None:
+    """Raise an ArgumentError unless G is given on the configuration's (μ, B, V_bias) grid."""
+    grids = {"mu": config.mu, "B": config.B, "bias": np.array(config.bias)}
+    differ = [
+        axis
+        for axis in AXES
+        if axis not in G.coords
+        or G[axis].shape != grids[axis].shape
+        or not np.allclose(G[axis], grids[axis], rtol=0, atol=1e-6)  # room for float32 files
+    ]
+    must = "be on the grid the network was trained on (" + ", ".join(
+        f"{axis}: {len(grids[axis])} points from {grids[axis][0]:g} to {grids[axis][-1]:g}"
+        for axis in AXES
+    )
+    require(not differ, name, must + ")", f"it differs in {', '.join(differ)}")
+
+
+def load_model(folder: str | Path) -> TrainedModel:
+    """Read a trained model from its folder, with Keras' safe mode.
+
+    Raises
+    ------
+    ArgumentError
+        If the folder is not one of a finished training, or a file in it is damaged.
+    """
+    folder = Path(folder)
+    require(folder.is_dir(), "model", _MODEL, f"there is no folder '{folder}'")
+    finished = (folder / METRICS).exists()
+    require(finished, "model", _MODEL, f"the training in '{folder}' is not finished")
+    config = load_model_config(folder)
+    scaler = read_json(folder / SCALER)
+    try:
+        labels = LabelScaler.from_dict(scaler["labels"])
+        inputs = None if scaler["inputs"] is None else InputScaler.from_dict(scaler["inputs"])
+    except (KeyError, TypeError, ValueError) as error:
+        raise ArgumentError("model", _MODEL, f"'{folder / SCALER}' lacks {error}") from None
+    return TrainedModel(load_network(folder / NETWORK), labels, inputs, config)
+
+
+def load_model_config(folder: Path) -> Config:
+    """Read the configuration a model was trained with from its folder."""
+    content: Mapping[str, Any] = read_json(folder / CONFIG)
+    try:
+        return Config.model_validate(content.get("config"))
+    except ValidationError as error:
+        wrong = ".".join(str(part) for part in error.errors()[0]["loc"]) or "config"
+        but = f"'{folder / CONFIG}' has no valid {wrong}"
+        raise ArgumentError("model", _MODEL, but) from None
+
+
+def save_network(network: Any, path: Path) -> None:
+    """Write a Keras network; if it is compiled, with its optimizer and its state."""
+    with replacing(path) as temporary:
+        network.save(temporary)
+
+
+def load_network(path: Path, compiled: bool = False) -> Any:
+    """Read a Keras network in safe mode; compiled means with its optimizer and its state."""
+    try:
+        return import_keras().saving.load_model(path, compile=compiled, safe_mode=True)
+    except (OSError, ValueError, KeyError, BadZipFile) as error:
+        but = f"'{path}' cannot be read: {str(error).splitlines()[0]}"
+        raise ArgumentError("model", _MODEL, but) from None

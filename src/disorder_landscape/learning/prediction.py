@@ -1,0 +1,75 @@
+"""From measured conductances to disorder: what the trained network says."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from disorder_landscape.learning.model import TrainedModel, check_grid, load_model
+from disorder_landscape.learning.scaling import conductance_array
+from disorder_landscape.physics.disorder import potential_from_components
+
+
+def predict(model: str | Path | TrainedModel, G: xr.Dataset) -> xr.Dataset:
+    """Return the disorder and α that a trained network sees in conductances.
+
+    Parameters
+    ----------
+    model : path or TrainedModel
+        Folder of a trained model, or what `load_model` made of it.
+    G : Dataset
+        Variables G_LL, G_RR, G_LR, G_RL in e²/h on the model's (mu, B, bias) grid, dimensions in
+        any order; one wire, or several along the dimension realization.
+
+    Returns
+    -------
+    Dataset
+        components (component) and potential (site) in meV, alpha in meV nm, each with a leading
+        realization where G has one. The potential has mean zero, which no label describes; alpha
+        is the configuration's where it is no label.
+
+    Raises
+    ------
+    ArgumentError
+        If G lacks a variable, holds NaN or is on another grid, or the folder holds no model.
+    """
+    if not isinstance(model, TrainedModel):
+        model = load_model(model)
+    dataset = model.config.dataset
+    X = conductance_array(G)
+    check_grid(G, dataset)
+    Y = model.predict_labels(X)
+    components = Y[:, : dataset.components]
+    fixed = np.full(len(Y), dataset.alpha_range[0])
+    alpha = Y[:, dataset.components] if dataset.alpha_is_label else fixed
+    predicted = xr.Dataset(
+        {
+            "components": (
+                ("realization", "component"),
+                components,
+                {"units": "meV", "long_name": "predicted disorder components"},
+            ),
+            "potential": (
+                ("realization", "site"),
+                potential_from_components(components, dataset.sites),
+                {"units": "meV", "long_name": "predicted disorder potential"},
+            ),
+            "alpha": (
+                "realization",
+                alpha,
+                {"units": "meV nm", "long_name": "predicted spin-orbit coupling"},
+            ),
+        },
+        coords={
+            "component": np.arange(1, dataset.components + 1),
+            "site": np.arange(dataset.sites),
+        },
+        attrs={"config_hash": dataset.hash},
+    )
+    if "realization" not in G.dims:
+        return predicted.isel(realization=0)
+    if "realization" in G.coords:
+        predicted = predicted.assign_coords(realization=G["realization"])
+    return predicted

@@ -1,0 +1,158 @@
+"""What the network sees and what it answers: conductances, labels, and their scales."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Self
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+from sklearn.preprocessing import StandardScaler
+
+from disorder_landscape.arguments import require
+from disorder_landscape.physics.parameters import FloatArray
+
+ConductanceArray = NDArray[np.float32]
+
+CHANNELS = ("G_LL", "G_RR", "G_LR", "G_RL")
+"""The network's input channels, in this order: the "4 different measurements" of S-II.2."""
+AXES = ("mu", "B", "bias")
+"""The measurement configurations K, in the order of the network's axes."""
+COMPRESSION: ConductanceArray = np.array([0.2, 0.2, 0.003, 0.003], dtype=np.float32)
+"""Scale s in e²/h of asinh(G/s) per channel: typical local and nonlocal conductances."""
+
+
+def conductance_array(G: xr.Dataset) -> ConductanceArray:
+    """Return what the network sees, whatever the order of the dimensions of G.
+
+    Parameters
+    ----------
+    G : Dataset
+        Variables G_LL, G_RR, G_LR, G_RL in e²/h, dims mu, B, bias and maybe realization.
+
+    Returns
+    -------
+    array, shape (realization, mu, B, bias, channel)
+        One realization where G has no such dimension.
+
+    Raises
+    ------
+    ArgumentError
+        If a variable or a dimension is missing or superfluous, or a conductance is not finite.
+    """
+    channels = []
+    for name in CHANNELS:
+        require(name in G, "G", f"hold the variables {', '.join(CHANNELS)}", f"{name} is missing")
+        dims = set(G[name].dims)
+        must = "have the dimensions mu, B, bias and at most realization"
+        require(dims - {"realization"} == set(AXES), "G", must, f"{name} has {G[name].dims}")
+        G_ab = G[name] if "realization" in dims else G[name].expand_dims("realization")
+        channels.append(G_ab.transpose("realization", *AXES).to_numpy().astype(np.float32))
+    X = np.stack(channels, axis=-1)
+    require(bool(np.isfinite(X).all()), "G", "be finite", "it holds NaN or infinity")
+    return X
+
+
+def label_names(components: int, alpha_is_label: bool) -> tuple[str, ...]:
+    """Return the names of the labels: c_1 … c_n, then alpha."""
+    names = [f"c_{n}" for n in range(1, components + 1)]
+    return (*names, "alpha") if alpha_is_label else tuple(names)
+
+
+def label_array(dataset: xr.Dataset, alpha_is_label: bool) -> FloatArray:
+    """Return the labels Y = (c₁ … c_n[, α]) in meV and meV nm, shape (realization, label)."""
+    Y = dataset["components"].transpose("realization", "component").to_numpy()
+    if alpha_is_label:
+        Y = np.column_stack([Y, dataset["alpha"].to_numpy()])
+    return Y.astype(np.float64)
+
+
+@dataclass(frozen=True, eq=False)
+class LabelScaler:
+    """Standard scaling of the labels: zero mean and unit variance over the training set.
+
+    Parameters
+    ----------
+    names : tuple of str
+        c_1 … c_n and alpha.
+    mean, std : array, shape (label,)
+        In meV, for alpha in meV nm.
+    """
+
+    names: tuple[str, ...]
+    mean: FloatArray
+    std: FloatArray
+
+    @classmethod
+    def fit(cls, names: tuple[str, ...], Y: FloatArray) -> Self:
+        """Return the scaler of a training set, Y of shape (realization, label)."""
+        fitted = StandardScaler().fit(Y)
+        return cls(names, fitted.mean_, fitted.scale_)
+
+    def scale(self, Y: FloatArray) -> FloatArray:
+        """Return standard-scaled labels, shape (…, label)."""
+        return (Y - self.mean) / self.std
+
+    def unscale(self, Y: FloatArray) -> FloatArray:
+        """Return labels in meV and meV nm from standard-scaled ones, shape (…, label)."""
+        return Y * self.std + self.mean
+
+    @property
+    def components(self) -> int:
+        """How many of the labels are disorder components."""
+        return sum(name != "alpha" for name in self.names)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return what JSON can hold, to the last bit."""
+        return {"names": self.names, "mean": self.mean.tolist(), "std": self.std.tolist()}
+
+    @classmethod
+    def from_dict(cls, content: Mapping[str, Any]) -> Self:
+        """Return the scaler that `to_dict` described."""
+        return cls(tuple(content["names"]), np.array(content["mean"]), np.array(content["std"]))
+
+
+@dataclass(frozen=True, eq=False)
+class InputScaler:
+    """asinh(G/s), then standard scaling per pixel over the training set.
+
+    Conductances reach from 10⁻⁴ to 2 e²/h; asinh is linear below s and logarithmic above, which
+    shows the network the small ones too.
+
+    Parameters
+    ----------
+    mean, std : array of float32, shape (mu, B, bias, channel)
+        Of asinh(G/s).
+    """
+
+    mean: ConductanceArray
+    std: ConductanceArray
+
+    @classmethod
+    def fit(cls, X: ConductanceArray) -> Self:
+        """Return the scaler of a training set, X of shape (realization, mu, B, bias, channel)."""
+        compressed = np.arcsinh(X / COMPRESSION)
+        fitted = StandardScaler().fit(compressed.reshape(len(X), -1))
+        shape = X.shape[1:]
+        return cls(
+            fitted.mean_.astype(np.float32).reshape(shape),
+            fitted.scale_.astype(np.float32).reshape(shape),
+        )
+
+    def scale(self, X: ConductanceArray) -> ConductanceArray:
+        """Return the network's input, shape (realization, mu, B, bias, channel)."""
+        compressed: ConductanceArray = np.arcsinh(X / COMPRESSION)
+        return (compressed - self.mean) / self.std
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return what JSON can hold, to the last bit."""
+        return {"mean": self.mean.tolist(), "std": self.std.tolist()}
+
+    @classmethod
+    def from_dict(cls, content: Mapping[str, Any]) -> Self:
+        """Return the scaler that `to_dict` described."""
+        return cls(
+            np.array(content["mean"], dtype=np.float32), np.array(content["std"], dtype=np.float32)
+        )
