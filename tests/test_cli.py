@@ -157,5 +157,8 @@ def test_every_command_helps_with_an_example(monkeypatch, capsys):
 
 
 def test_the_command_line_does_not_import_tensorflow():
-    script = "import sys, disorder_landscape.cli, disorder_landscape.chain\nassert 'tensorflow' not in sys.modules"
+    script = (
+        "import sys, disorder_landscape.cli, disorder_landscape.chain\n"
+        "assert 'tensorflow' not in sys.modules"
+    )
     subprocess.run([sys.executable, "-c", script], check=True)

@@ -99,7 +99,7 @@ def test_thermal_convolution():
 
 
 def test_topological_visibility_is_the_determinant_of_the_reflection_matrix():
-    """S-I: T_IV = det r at ω = 0, real, positive in a trivial and negative in a topological wire."""
+    """S-I: T_IV = det r at ω = 0: real, positive if trivial and negative if topological."""
     arguments = np.array([0.1]), np.array([0.5]), np.zeros(1)
     r = next(kwant_solver.scattering_matrices(WIRE, *arguments))[1].submatrix(0, 0)
     determinant = np.linalg.det(r)

@@ -32,7 +32,9 @@ def main() -> None:
         print(f"landscape: {error}", file=sys.stderr)
         sys.exit(2)
     except KeyboardInterrupt:
-        print("landscape: interrupted; what is done stays, the same command goes on", file=sys.stderr)
+        print(
+            "landscape: interrupted; what is done stays, the same command goes on", file=sys.stderr
+        )
         sys.exit(130)
 
 
@@ -89,9 +91,7 @@ def simulate(
         V = np.zeros(sites)
     else:
         V = disorder_realization(np.random.default_rng(seed), components, sites)[1]
-    wire = Nanowire(
-        V, alpha=alpha, g=g, gamma=gamma, delta0=delta0, barrier=(barrier, barrier)
-    )
+    wire = Nanowire(V, alpha=alpha, g=g, gamma=gamma, delta0=delta0, barrier=(barrier, barrier))
     grids = {
         name: simulation.parse_grid(name, text)
         for name, text in {"mu": mu, "B": B, "bias": bias}.items()
@@ -178,7 +178,7 @@ def predict(
     model: Annotated[Path, typer.Option(help="Folder of a trained model.")],
     output: Annotated[Path, typer.Option("--output", "-o", help="netCDF file.")],
 ) -> None:
-    """The network's guess of disorder and alpha from conductances on the model's grid.
+    """Let a trained network guess disorder and alpha from conductances on its grid.
 
     Example: landscape predict wire.nc --model data_small/models/five_components_and_alpha -o Y.nc
     """

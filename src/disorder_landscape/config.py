@@ -120,13 +120,26 @@ class TrainingConfig(_Section):
 
 
 class FiguresConfig(_Section):
-    """Resolution of the maps in the figures."""
+    """Which test realizations the figures show, and the resolution of their maps.
 
-    mu_points: Positive = 61
-    B_points: Positive = 81
-    bias_points: Positive = 81
+    The maps reach as far as the dataset's grid in μ and B.
+    """
+
     realizations: tuple[Annotated[int, Field(ge=0)], ...] = (0, 1, 2, 3)
-    """Which of the test realizations are drawn."""
+    """Which of the test realizations are drawn, (a), (b), …"""
+    alpha_samples: Positive = 60
+    """How many test realizations Fig. 5a shows."""
+    mu_points: Positive = 81
+    B_points: Positive = 101
+    bias_points: Positive = 81
+    pristine_mu_points: Positive = 121
+    pristine_B_points: Positive = 161
+    """Fig. S9 is one wire only, and the same at every preset unless these are set."""
+    bias_max: Annotated[float, Field(gt=0, le=1)] = 0.04
+    """The maps reach from minus this V_bias to this, in meV."""
+    energy_spacing: Annotated[float, Field(gt=0, le=0.1)] = 0.25e-3
+    """Of the energies that the temperature averages over, in meV: half the dataset's default, as
+    a resonance that falls on a grid point shows as a speckle in a map."""
 
 
 class Config(_Section):

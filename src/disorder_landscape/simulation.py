@@ -1,4 +1,4 @@
-"""What `landscape simulate` does: a potential from a file, conductance and T_IV into one, a plot."""
+"""What `landscape simulate` does: read a potential, collect conductance and T_IV, plot them."""
 
 from __future__ import annotations
 
@@ -97,7 +97,15 @@ def simulate_wire(
     progress : callable, optional
         As in `conductance`.
     """
-    result = conductance(wire, **grids, temperature=temperature, solver=solver, progress=progress)
+    result = conductance(
+        wire,
+        grids["mu"],
+        grids["B"],
+        grids["bias"],
+        temperature=temperature,
+        solver=solver,
+        progress=progress,
+    )
     result["T_IV"] = topological_visibility(wire, grids["mu"], grids["B"], solver=solver)
     result["potential"] = (
         "site",

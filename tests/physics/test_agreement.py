@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
-from random_wires import energies, fields, mus, random_wire, seeds
 from hypothesis import example, given, settings
 from numpy.testing import assert_allclose
 from scipy.optimize import brentq
 
 from disorder_landscape import Nanowire, conductance, topological_visibility
 from disorder_landscape.physics import fast_solver, hamiltonian, kwant_solver, leads
+from random_wires import energies, fields, mus, random_wire, seeds
 
 
 def both(wire, mu, B, omega):
@@ -128,7 +128,9 @@ def test_lanes_and_threads_leave_no_trace():
     grid = fast_solver.bare_conductance(wires, mu, B, omega)
     for index in np.ndindex(3, 5, 2, 7):
         w, i, j, k = index
-        point = fast_solver.bare_conductance([wires[w]], mu[i : i + 1], B[j : j + 1], omega[k : k + 1])
+        point = fast_solver.bare_conductance(
+            [wires[w]], mu[i : i + 1], B[j : j + 1], omega[k : k + 1]
+        )
         np.testing.assert_array_equal(grid[index], point[0, 0, 0, 0])
     threads = numba.get_num_threads()
     numba.set_num_threads(1)
@@ -141,8 +143,8 @@ def test_lanes_and_threads_leave_no_trace():
 
 def test_finite_temperature_is_the_same_average_for_both_solvers():
     wire = random_wire(8, sites=40)
-    arguments = dict(mu=[0.1], B=[0.3, 0.6], bias=[-0.02, 0.0, 0.03], energy_spacing=0.02)
-    fast = conductance(wire, **arguments)
-    kwant = conductance(wire, **arguments, solver="kwant")
+    grids = {"mu": [0.1], "B": [0.3, 0.6], "bias": [-0.02, 0.0, 0.03]}
+    fast = conductance(wire, **grids, energy_spacing=0.02)
+    kwant = conductance(wire, **grids, energy_spacing=0.02, solver="kwant")
     for name in fast.data_vars:
         assert_allclose(fast[name], kwant[name], atol=1e-10)

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
-from random_wires import energies, fields, mus, random_wire, seeds
 from hypothesis import given, settings
 from numpy.testing import assert_allclose
 
 from disorder_landscape import Nanowire, conductance, topological_visibility
 from disorder_landscape.physics import hamiltonian, kwant_solver
 from disorder_landscape.physics.parameters import BIAS
+from random_wires import energies, fields, mus, random_wire, seeds
 
 KNOWN = [  # μ, B, ω, G_LL, G_RL, det r of the pristine wire at α = 8, from PHYSICS.md
     (0.0, 0.0, 0.0, 0.0033, 0.0000, 1.0000),

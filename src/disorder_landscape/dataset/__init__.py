@@ -1,0 +1,1 @@
+"""Datasets of many wires: what a realization is, shards, files."""

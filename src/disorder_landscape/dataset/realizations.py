@@ -29,7 +29,7 @@ class Realization:
 
 
 def realization(config: DatasetConfig, index: int) -> Realization:
-    """Return realization number `index`, a function of (seed, index) and the disorder model alone."""
+    """Return realization `index`, a function of (seed, index) and the disorder model alone."""
     rng = np.random.default_rng([config.seed, index])
     alpha = rng.uniform(*config.alpha_range)
     components, potential = disorder_realization(

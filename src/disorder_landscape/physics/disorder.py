@@ -32,7 +32,7 @@ def kernel(correlation_length: float = CORRELATION_LENGTH, amplitude: str = "sum
     k = np.exp(-((x / correlation_length) ** 2))
     require(amplitude in AMPLITUDES, "amplitude", f"be one of {AMPLITUDES}", f"it is {amplitude!r}")
     scale = {"sum": 1 / k.sum(), "double": 2 / k.sum(), "unit-variance": 1 / np.sqrt(k @ k)}
-    return k * scale[amplitude]
+    return np.asarray(k * scale[amplitude])
 
 
 def smooth_noise(
@@ -77,7 +77,8 @@ def potential_from_components(
     require(0 < n < sites, "components", f"number between 1 and {sites - 1}", f"there are {n}")
     full = np.zeros((*components.shape[:-1], sites))
     full[..., 1 : n + 1] = components
-    return np.asarray(idct(full, type=2, norm="ortho", axis=-1)) + np.asarray(mean)[..., None]
+    V = idct(full, type=2, norm="ortho", axis=-1) + np.asarray(mean)[..., None]
+    return np.asarray(V)
 
 
 @lru_cache

@@ -1,15 +1,17 @@
 """The leads attached to the two end sites, and the transmission probabilities between them.
 
 With M' of `recursion` the end blocks of the Green's function are G = (M' − Σ_L − Σ_R)⁻¹, an 8×8
-complex symmetric matrix per lane, inverted by symmetric sweeps without pivoting: the leads give it an
-imaginary part of one sign, which keeps the pivots away from zero. Then (Fisher–Lee) the probability
-from channel set a to b is Tr[Γ_b G_ba Γ_a G_ba†], with Γ = −2 Im Σ real symmetric, as Σ is symmetric.
+complex symmetric matrix per lane, inverted by symmetric sweeps without pivoting: the leads give it
+an imaginary part of one sign, which keeps the pivots away from zero. Then (Fisher–Lee) the
+probability from channel set a to b is Tr[Γ_b G_ba Γ_a G_ba†], with Γ = −2 Im Σ real symmetric, as Σ
+is symmetric.
 """
 
 from __future__ import annotations
 
 import numba as nb
 import numpy as np
+from numpy.typing import NDArray
 
 from disorder_landscape.physics.hamiltonian import ComplexArray
 from disorder_landscape.physics.parameters import FloatArray
@@ -20,13 +22,13 @@ LEFT_ELECTRON, LEFT_HOLE, RIGHT_ELECTRON, RIGHT_HOLE = 0, 1, 2, 3
 
 @nb.njit(cache=True, error_model="numpy")
 def end_green_functions(
-    s: FloatArray, sigma: ComplexArray, energy: FloatArray, re: FloatArray, im: FloatArray
+    s: FloatArray, sigma: ComplexArray, energy: NDArray[np.int64], re: FloatArray, im: FloatArray
 ) -> None:  # pragma: no cover
     """Write −G of the two end sites into re and im, shape (64 · LANES,), in units of 1/t'.
 
-    s is the state that `eliminate_inner_sites` leaves; sigma the leads' self-energies in units of t',
-    shape (energy, lead, charge, 2, 2); energy[l] tells which of them belongs to lane l. The matrix has
-    the left end's four entries first; entry (i, j) of lane l is at [(8i + j) · LANES + l].
+    s is the state that `eliminate_inner_sites` leaves; sigma the leads' self-energies in units of
+    t', shape (energy, lead, charge, 2, 2); energy[l] tells which of them belongs to lane l. The
+    matrix has the left end's four entries first; entry (i, j) of lane l is at [(8i + j)·LANES + l].
     """
     L = LANES
     upper = 0
@@ -96,7 +98,7 @@ def _probability(
     h10, h11 = A[1] * g00 + A[2] * g10, A[1] * g01 + A[2] * g11
     k00, k01 = h00 * B[0] + h01 * B[1], h00 * B[1] + h01 * B[2]
     k10, k11 = h10 * B[0] + h11 * B[1], h10 * B[1] + h11 * B[2]
-    return k00 * g00 + k01 * g01 + k10 * g10 + k11 * g11
+    return float(k00 * g00 + k01 * g01 + k10 * g10 + k11 * g11)
 
 
 @nb.njit(cache=True)

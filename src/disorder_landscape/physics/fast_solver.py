@@ -7,11 +7,10 @@ Same signatures as `kwant_solver`. Work is cut into pieces of one wire, one fiel
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
 from disorder_landscape.physics.ends import end_green_functions, lane_conductances
 from disorder_landscape.physics.hamiltonian import ComplexArray, pairing_factors
@@ -32,8 +31,7 @@ GROWTH_LIMIT = 1e7
 """Largest inverse pivot (in units of 1/t') up to which real elimination is trusted."""
 
 
-@dataclass(frozen=True)
-class _Problem:
+class _Problem(NamedTuple):
     """What the kernels need, in units of each wire's t' = √(t² + (α/2a)²)."""
 
     V: FloatArray  # (wire, site), with barriers
@@ -71,49 +69,47 @@ def _prepare(
 
 @nb.njit(cache=True)
 def _solve_lanes(
-    V: FloatArray,
-    zeeman_x: FloatArray,
-    zeeman_z: FloatArray,
-    kinetic: FloatArray,
-    normal: FloatArray,
-    anomalous: FloatArray,
-    sigma: ComplexArray,
+    p: _Problem,
+    w: int,
+    f: int,
     first: int,
     growth_limit: float,
     re: FloatArray,
     im: FloatArray,
 ) -> int:  # pragma: no cover
-    """Write −G of the end sites for the pairs from number `first` on; return how many pivoted."""
+    """Write −G of the end sites of wire w at field f for the pairs (μ, ω) from `first` on.
+
+    Returns
+    -------
+    int
+        How many of the lanes were solved by `pivoted`.
+    """
     s = np.empty(STATE * LANES)
-    energy = np.empty(LANES, dtype=np.int64)
-    pairs = kinetic.size * normal.size
+    energy, mu = np.empty(LANES, dtype=np.int64), np.empty(LANES, dtype=np.int64)
+    energies = p.normal.shape[1]
+    pairs = p.kinetic.shape[1] * energies
     for l in range(LANES):
         pair = min(first + l, pairs - 1)
-        energy[l] = pair % normal.size
-        s[KINETIC * LANES + l] = kinetic[pair // normal.size]
-        s[NORMAL * LANES + l] = normal[energy[l]]
-        s[ANOMALOUS * LANES + l] = anomalous[energy[l]]
+        mu[l], energy[l] = pair // energies, pair % energies
+        s[KINETIC * LANES + l] = p.kinetic[w, mu[l]]
+        s[NORMAL * LANES + l] = p.normal[w, energy[l]]
+        s[ANOMALOUS * LANES + l] = p.anomalous[w, energy[l]]
+    V, zeeman_x, zeeman_z, sigma = p.V[w], p.zeeman_x[w, f], p.zeeman_z[w, f], p.sigma[w, f]
     eliminate_inner_sites(s, V, zeeman_x, zeeman_z)
     end_green_functions(s, sigma, energy, re, im)
     pivoted = 0
     for l in range(min(LANES, pairs - first)):
         if not s[GROWTH * LANES + l] < growth_limit:  # so that NaN pivots too
             pivoted += 1
-            mu, e = min(first + l, pairs - 1) // normal.size, energy[l]
-            terms = kinetic[mu], normal[e], anomalous[e]
+            e = energy[l]
+            terms = p.kinetic[w, mu[l]], p.normal[w, e], p.anomalous[w, e]
             pivoted_end_green_functions(V, zeeman_x, zeeman_z, terms, sigma[e], l, re, im)
     return pivoted
 
 
 @nb.njit(cache=True, parallel=True)
 def _conductance_kernel(
-    V: FloatArray,
-    zeeman_x: FloatArray,
-    zeeman_z: FloatArray,
-    kinetic: FloatArray,
-    normal: FloatArray,
-    anomalous: FloatArray,
-    sigma: ComplexArray,
+    p: _Problem,
     growth_limit: float,
     out: FloatArray,
 ) -> int:  # pragma: no cover
@@ -124,25 +120,16 @@ def _conductance_kernel(
     for task in nb.prange(wires * fields * pieces):
         w, f, first = task // pieces // fields, task // pieces % fields, task % pieces * LANES
         re, im = np.empty(64 * LANES), np.empty(64 * LANES)
-        pivoted += _solve_lanes(
-            V[w], zeeman_x[w, f], zeeman_z[w, f], kinetic[w], normal[w], anomalous[w],
-            sigma[w, f], first, growth_limit, re, im,
-        )  # fmt: skip
+        pivoted += _solve_lanes(p, w, f, first, growth_limit, re, im)
         for l in range(min(LANES, pairs - first)):
-            at = sigma[w, f, (first + l) % normal.shape[1]]
+            at = p.sigma[w, f, (first + l) % p.normal.shape[1]]
             lane_conductances(re, im, at, l, out[w, f, first + l])
     return pivoted
 
 
 @nb.njit(cache=True, parallel=True)
 def _end_block_kernel(
-    V: FloatArray,
-    zeeman_x: FloatArray,
-    zeeman_z: FloatArray,
-    kinetic: FloatArray,
-    normal: FloatArray,
-    anomalous: FloatArray,
-    sigma: ComplexArray,
+    p: _Problem,
     growth_limit: float,
     out: ComplexArray,
 ) -> int:  # pragma: no cover
@@ -153,10 +140,7 @@ def _end_block_kernel(
     for task in nb.prange(wires * fields * pieces):
         w, f, first = task // pieces // fields, task // pieces % fields, task % pieces * LANES
         re, im = np.empty(64 * LANES), np.empty(64 * LANES)
-        pivoted += _solve_lanes(
-            V[w], zeeman_x[w, f], zeeman_z[w, f], kinetic[w], normal[w], anomalous[w],
-            sigma[w, f], first, growth_limit, re, im,
-        )  # fmt: skip
+        pivoted += _solve_lanes(p, w, f, first, growth_limit, re, im)
         for l in range(min(LANES, pairs - first)):
             for lead in range(2):
                 for i in range(4):
@@ -173,14 +157,14 @@ def bare_conductance(
     omega: FloatArray,
     growth_limit: float = GROWTH_LIMIT,
 ) -> FloatArray:
-    """Return the T = 0 conductances at ±ω, shape (wire, mu, B, omega, 2, 4), in e²/h; 0 ≤ ω < Δ₀.
+    """Return the T = 0 conductances at ±ω, shape (wire, mu, B, omega, 2, 4), in e²/h.
 
-    The last axes are the sign of ω (+, −) and G_LL, G_RR, G_LR, G_RL. All wires have the same number
-    of sites. Lanes whose elimination grows beyond `growth_limit` are solved by `pivoted` instead.
+    The last axes are the sign of ω (+, −) and G_LL, G_RR, G_LR, G_RL; 0 ≤ ω < Δ₀. All wires have
+    the same number of sites. Lanes that grow beyond `growth_limit` are solved by `pivoted`.
     """
     p = _prepare(wires, mu, B, omega)
     out = np.empty((len(wires), B.size, mu.size * omega.size, 2, 4))
-    _conductance_kernel(*_arrays(p), growth_limit, out)
+    _conductance_kernel(p, growth_limit, out)
     shaped = out.reshape(len(wires), B.size, mu.size, omega.size, 2, 4)
     return np.asarray(shaped.swapaxes(1, 2))
 
@@ -190,18 +174,14 @@ def reflection_determinant(
 ) -> FloatArray:
     """Return det r at ω = 0 of both ends, shape (wire, lead, mu, B).
 
-    r = −1 + iΓ^½ G Γ^½ (Fisher–Lee), so det r = det(−1 + iΓG); it is real by particle–hole symmetry.
+    r = −1 + iΓ^½ G Γ^½ (Fisher–Lee), so det r = det(−1 + iΓG), real by particle–hole symmetry.
     """
     p = _prepare(wires, mu, B, np.zeros(1))
     out = np.empty((len(wires), B.size, mu.size, 2, 4, 4), dtype=np.complex128)
-    _end_block_kernel(*_arrays(p), growth_limit, out)
+    _end_block_kernel(p, growth_limit, out)
     gamma = np.zeros((len(wires), B.size, 1, 2, 4, 4))
     for charge in range(2):
         block = slice(2 * charge, 2 * charge + 2)
         gamma[:, :, 0, :, block, block] = -2 * p.sigma[:, :, 0, :, charge].imag
     determinant = np.linalg.det(1j * gamma @ out - np.eye(4)).real
     return np.asarray(np.moveaxis(determinant, (3, 2, 1), (1, 2, 3)))
-
-
-def _arrays(p: _Problem) -> tuple[NDArray[np.inexact], ...]:
-    return p.V, p.zeeman_x, p.zeeman_z, p.kinetic, p.normal, p.anomalous, p.sigma

@@ -29,7 +29,7 @@ PAULI: dict[str, ComplexArray] = {
 
 def tau_sigma(tau: str, sigma: str) -> ComplexArray:
     """Return τ ⊗ σ for two of "0xyz", shape (4, 4)."""
-    return np.kron(PAULI[tau], PAULI[sigma])
+    return np.kron(PAULI[tau], PAULI[sigma]).astype(np.complex128)
 
 
 TAU_Z = tau_sigma("z", "0")
@@ -74,7 +74,7 @@ def lead_hopping(wire: Nanowire) -> ComplexArray:
 
 
 def wire_hamiltonian(wire: Nanowire, mu: float, B: float, omega: float) -> ComplexArray:
-    """Return the whole matrix of the isolated wire, shape (4·site, 4·site), for tests and checks."""
+    """Return the whole matrix of the isolated wire, shape (4·site, 4·site), for checks."""
     n = wire.sites
     H = np.zeros((n, 4, n, 4), dtype=complex)
     sites = np.arange(n)

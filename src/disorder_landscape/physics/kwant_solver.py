@@ -22,16 +22,16 @@ ELECTRON, HOLE = 0, 1
 def build_system(wire: Nanowire) -> Any:
     """Return the finalised Kwant system of a wire.
 
-    Its parameters are `uniform`, the onsite matrix of a site without disorder, and B. The leads conserve charge (electrons are block 0, holes block 1) and have the particle–hole
-    symmetry of the whole, so that Kwant returns modes in which the reflection matrix at ω = 0 is
-    real up to one unitary per charge block.
+    Its parameters are `uniform`, the onsite matrix of a site without disorder, and B. The leads
+    conserve charge (electrons are block 0, holes block 1) and have the particle–hole symmetry of
+    the whole, so that Kwant's modes at ω = 0 make the determinant of the reflection matrix real.
     """
     V = wire.potential_with_barriers
     lattice = kwant.lattice.chain(1, norbs=4)
     system = kwant.Builder()
 
     def onsite(site: Any, uniform: ComplexArray) -> ComplexArray:
-        return uniform + V[site.tag[0]] * h.TAU_Z
+        return np.asarray(uniform + V[site.tag[0]] * h.TAU_Z)
 
     system[(lattice(i) for i in range(wire.sites))] = onsite
     for i in range(wire.sites - 1):
@@ -71,10 +71,10 @@ def scattering_matrices(
 
 
 def conductances(smatrix: Any) -> FloatArray:
-    """Return the BTK conductances at +ω and −ω, shape (2, 4), order G_LL, G_RR, G_LR, G_RL.
+    """Return the BTK conductances at +ω and −ω, shape (2, 4): LL, RR, LR, RL.
 
-    G_aa = N_e − R_ee + R_he and G_ab = T_ee − T_he (from b to a) at +ω; particle–hole symmetry gives
-    those at −ω from holes coming in, with electrons and holes exchanged.
+    At +ω G_aa = N_e − R_ee + R_he and G_ab = T_ee − T_he (from b to a). Particle–hole symmetry
+    gives those at −ω from holes coming in, with electrons and holes exchanged.
     """
     G = np.empty((2, 4))
     for sign, (same, other) in enumerate([(ELECTRON, HOLE), (HOLE, ELECTRON)]):
@@ -91,7 +91,7 @@ def conductances(smatrix: Any) -> FloatArray:
 def bare_conductance(
     wires: Sequence[Nanowire], mu: FloatArray, B: FloatArray, omega: FloatArray
 ) -> FloatArray:
-    """Return the T = 0 conductances at ±ω, shape (wire, mu, B, omega, 2, 4), in e²/h; 0 ≤ ω < Δ₀."""
+    """Return the T = 0 conductances at ±ω, shape (wire, mu, B, omega, 2, 4), in e²/h."""
     G = np.empty((len(wires), mu.size, B.size, omega.size, 2, 4))
     for w, wire in enumerate(wires):
         for index, smatrix in scattering_matrices(wire, mu, B, omega):
@@ -99,9 +99,7 @@ def bare_conductance(
     return G
 
 
-def reflection_determinant(
-    wires: Sequence[Nanowire], mu: FloatArray, B: FloatArray
-) -> FloatArray:
+def reflection_determinant(wires: Sequence[Nanowire], mu: FloatArray, B: FloatArray) -> FloatArray:
     """Return det r at ω = 0 of both ends, shape (wire, lead, mu, B)."""
     determinant = np.empty((len(wires), 2, mu.size, B.size))
     for w, wire in enumerate(wires):

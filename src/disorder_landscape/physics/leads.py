@@ -92,8 +92,8 @@ def fill_self_energies(
 def rotate_spin(sigma: ComplexArray, angle: float) -> None:  # pragma: no cover
     """Replace the right lead's blocks by U†ΣU, U = exp(−iσy·angle), in place.
 
-    sigma has shape (energy, lead, charge, 2, 2). In the wire's rotated frame (see `recursion`) site n
-    has the angle nφ: 0 where the left lead is attached.
+    sigma has shape (energy, lead, charge, 2, 2). In the wire's rotated frame (see `recursion`)
+    site n has the angle nφ: 0 where the left lead is attached.
     """
     c, s = np.cos(angle), np.sin(angle)
     for k in range(sigma.shape[0]):

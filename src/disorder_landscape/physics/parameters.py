@@ -100,7 +100,7 @@ class Nanowire:
 
     @property
     def hopping(self) -> float:
-        """t = ħ²/2m*a² in meV."""
+        """T = ħ²/2m*a² in meV."""
         return HBAR2_OVER_2ME / (self.mass * self.lattice**2)
 
     @property
@@ -161,9 +161,7 @@ def checked_potential(potential: ArrayLike, sites: int | None = None) -> FloatAr
     except (TypeError, ValueError):
         raise ArgumentError("potential", must, "it holds something else") from None
     require(V.ndim == 1 and V.size >= 2, "potential", must, f"it has shape {V.shape}")
-    require(
-        sites in (None, V.size), "potential", f"have {sites} sites", f"it has {V.size}"
-    )
+    require(sites in (None, V.size), "potential", f"have {sites} sites", f"it has {V.size}")
     require(bool(np.isfinite(V).all()), "potential", "be finite", "it holds NaN or infinity")
     must = "stay within ±1000 meV"
     require(bool((abs(V) <= 1e3).all()), "potential", must, f"it reaches {abs(V).max():g} meV")

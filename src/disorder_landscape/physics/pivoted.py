@@ -15,7 +15,7 @@ from disorder_landscape.physics.parameters import FloatArray
 from disorder_landscape.physics.recursion import LANES
 
 BELOW = 7
-"""Sub- and superdiagonals of a block-tridiagonal matrix of 4×4 blocks; pivoting doubles the latter."""
+"""Sub- and superdiagonals of a matrix of tridiagonal 4×4 blocks; pivoting doubles the latter."""
 WIDTH = 3 * BELOW + 1
 RHS = 4
 
@@ -54,9 +54,7 @@ def _banded_rows(
 
 
 @nb.njit(cache=True)
-def _back_substitute(
-    rows: ComplexArray, x: ComplexArray, first: int
-) -> None:  # pragma: no cover
+def _back_substitute(rows: ComplexArray, x: ComplexArray, first: int) -> None:  # pragma: no cover
     """Solve the upper triangle for the rows from `first` on, in place."""
     n = rows.shape[0]
     for i in range(n - 1, first - 1, -1):

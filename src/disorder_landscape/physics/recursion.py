@@ -5,9 +5,10 @@ inner sites are eliminated from M = (ω − H)/t' in real arithmetic,
 
     M' = [[E, C], [Cᵀ, D]],   E ← E − C D⁻¹ Cᵀ,   C ← −C D⁻¹ τz,   D ← A_{n+1} − τz D⁻¹ τz,
 
-with D the block of the site that is eliminated next and A_n the onsite blocks of M. A site-dependent
-spin rotation U_n = exp(−iσyφn), tan φ = α/2at, has made the hopping −t'τz, t' = √(t² + (α/2a)²), so
-that hopping costs signs only; it turns the Zeeman term into V_Z(σx cos 2φn + σz sin 2φn).
+with D the block of the site that is eliminated next and A_n the onsite blocks of M. A rotation of
+the spin from site to site, U_n = exp(−iσyφn), tan φ = α/2at, has made the hopping −t'τz with
+t' = √(t² + (α/2a)²), so that it costs signs only; it turns the Zeeman term into
+V_Z(σx cos 2φn + σz sin 2φn).
 
 Layout: one buffer holds entry k of lane l at s[k·LANES + l], every entry of every 4×4 block its own
 scalar in the loop over lanes, the innermost: it then compiles to full-width vector instructions.
@@ -22,7 +23,6 @@ kept as the measure of it, and lanes beyond a limit are solved again by `pivoted
 from __future__ import annotations
 
 import numba as nb
-import numpy as np
 
 from disorder_landscape.physics.parameters import FloatArray
 
@@ -78,8 +78,8 @@ def eliminate_inner_sites(
             r2 = 1.0 / (s[33 * L + l] - l20 * d2 - l21 * e2)
             l32 = f3 * r2
             r3 = 1.0 / (s[35 * L + l] - l30 * d3 - l31 * e3 - l32 * f3)
-            growth = max(max(abs(r0), abs(r1)), max(abs(r2), abs(r3)))
-            s[39 * L + l] = max(s[39 * L + l], growth)
+            growth = max(abs(r0), abs(r1), abs(r2), abs(r3), s[39 * L + l])
+            s[39 * L + l] = growth
             # rows of W = C L⁻ᵀ and U = W Δ⁻¹; then E ← E − U Wᵀ and C ← −U L⁻¹ τz
             a0, a1 = s[10 * L + l], s[11 * L + l] - l10 * s[10 * L + l]
             a2 = s[12 * L + l] - l20 * a0 - l21 * a1

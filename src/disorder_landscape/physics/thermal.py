@@ -1,4 +1,4 @@
-"""Finite temperature: the convolution of the T = 0 conductance with −df/dω (S-I), on an energy grid.
+"""Finite temperature: the T = 0 conductance convolved with −df/dω (S-I), on an energy grid.
 
 G(V) = ∫ dω G₀(ω) (1/4kT) sech²((ω − V)/2kT). The grid holds ±ω_k, ω_k = (k + ½)h; each node stands
 for the cell around it, whose weight is the exact integral of the kernel over the cell, divided by
