@@ -12,7 +12,7 @@ unexport PYTHONPATH PYTHONHOME
 # .venv is as it should be where it has this file.  Its name is made of the content of what set-up
 # reads, because the times of files say nothing after a clone or a copy into a container.
 SET_UP_FROM := requirements.lock requirements-uv.lock requirements-zig.lock pyproject.toml scripts/set_up.sh
-READY := .venv/ready-$(firstword $(shell cat $(SET_UP_FROM) | sha256sum))
+READY := .venv/ready-$(shell cat $(SET_UP_FROM) | sha256sum | cut -c 1-12)
 
 PYTHON_HERE := .venv/bin/python
 LANDSCAPE := .venv/bin/landscape
@@ -20,7 +20,6 @@ CONFIG := configs/$(PRESET).toml
 
 SCRIPTS := $(sort $(wildcard paper_figures/figure_*.py))
 FIGURES := $(foreach script,$(SCRIPTS),figure-$(word 2,$(subst _, ,$(notdir $(script)))))
-TRAINED_FIGURES := $(filter figure-3 figure-4 figure-5 figure-S5 figure-S7,$(FIGURES))
 
 COMPILE := .venv/bin/uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url --quiet
 
@@ -28,6 +27,8 @@ STARTED := $(shell date +%s)
 
 .PHONY: help setup generate train evaluate figures $(FIGURES) bench test lint lock clean
 .SUFFIXES:
+# One after the other: each command uses all cores by itself.
+.NOTPARALLEL:
 
 help: ## list the targets
 	@echo 'make TARGET [PRESET=small|shipped|smoke|paper] [PYTHON=/path/to/python3]'
@@ -39,17 +40,12 @@ setup: $(READY) ## make .venv from requirements.lock (a few minutes, once; the o
 $(READY):
 	@sh scripts/set_up.sh $@
 
-figures: $(FIGURES) ## every figure of the paper into build/figures, from dataset and training on
+# What is complete stays as it is; the shipped model needs no dataset and no training.
+figures: $(if $(filter shipped,$(PRESET)),,evaluate) $(FIGURES) ## dataset, training and every figure of the paper, into build/figures
 	@echo "make figures: done in $$(($$(date +%s) - $(STARTED))) s (PRESET=$(PRESET)), see build/figures"
 
 $(FIGURES): figure-%: $(READY)
 	$(PYTHON_HERE) $(wildcard paper_figures/figure_$*_*.py) --preset $(PRESET)
-
-# Dataset and training are resumed, or left as they are where they are complete.
-ifneq ($(PRESET),shipped)
-figures: evaluate
-$(TRAINED_FIGURES): train
-endif
 
 generate: $(READY) ## simulate the dataset of PRESET
 	$(LANDSCAPE) generate --config $(CONFIG)

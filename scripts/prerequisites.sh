@@ -15,7 +15,7 @@ if [ -n "${PYTHON-}" ]; then set -- "$PYTHON"; else set -- python3 python3.11 py
 first=$1
 while [ $# -gt 0 ] && ! suitable "$1"; do shift; done
 if [ $# -eq 0 ]; then
-  found=$("$first" --version 2>/dev/null) || found="no Python"
+  found=$("$first" --version 2>/dev/null) || found="not there"
   echo "set-up: Python 3.11, 3.12 or 3.13 is needed, but $first is $found:" \
     "apt-get install python3 (Debian 12 or 13), or name one: make PYTHON=/path/to/python3.11" >&2
   exit 1
@@ -26,15 +26,14 @@ python=$1
 debian=$(basename "$python" | sed 's/^python$/python3/')
 "$python" -c 'import ensurepip, venv' 2>/dev/null || missing "Python's venv module" "$debian-venv"
 
-cc=${CC:-$("$python" -c 'import sysconfig; print(sysconfig.get_config_var("CC") or "gcc")')}
 include=$("$python" -c 'import sysconfig; print(sysconfig.get_path("include"))')
-compiles() { echo "#include <$1>" | $cc -I"$include" -fsyntax-only -x c - 2>/dev/null; }
+[ -e "$include/Python.h" ] || missing "Python's header Python.h" "$debian-dev"
+
+cc=${CC:-$("$python" -c 'import sysconfig; print(sysconfig.get_config_var("CC") or "gcc")')}
 if ! command -v "${cc%% *}" >/dev/null; then
   missing "the C compiler ${cc%% *}" "gcc libc6-dev"
-elif ! compiles stdlib.h; then
+elif ! echo '#include <stdlib.h>' | $cc -fsyntax-only -x c - 2>/dev/null; then
   missing "the C library's header stdlib.h" libc6-dev
-elif ! compiles Python.h; then
-  missing "Python's header Python.h" "$debian-dev"
 fi
 
 [ -z "$packages" ] || exit 1
