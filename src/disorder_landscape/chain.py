@@ -111,7 +111,7 @@ def evaluate(run: Run) -> xr.Dataset:
     from disorder_landscape.learning.prediction import predict
     from disorder_landscape.learning.scaling import label_array
 
-    test = _test_set(run)
+    test = read_test_set(run)
     model = load_model(run.model_folder)
     predicted = predict(model, test)
     alpha_is_label = run.config.dataset.alpha_is_label
@@ -151,13 +151,14 @@ def evaluation(preset: str, build: str | Path = "build", workers: int = 2) -> xr
     return evaluate(run)
 
 
-def _test_set(run: Run) -> xr.Dataset:
+def read_test_set(run: Run) -> xr.Dataset:
+    """Return the run's test realizations with their conductances."""
     if run.name == SHIPPED:
         return read_dataset(SHIPPED_TEST_SET, shards.VARIABLES)
     from disorder_landscape.learning.training import split
 
     _, test = split(run.config.dataset.realizations, run.config.training.test_fraction)
-    return shards.read_shards(run.config.dataset, run.dataset_folder).isel(realization=test)
+    return shards.read_shards(run.config.dataset, run.dataset_folder, test.start)
 
 
 def _fingerprint(run: Run) -> str:

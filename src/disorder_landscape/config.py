@@ -132,14 +132,18 @@ class FiguresConfig(_Section):
     mu_points: Positive = 81
     B_points: Positive = 101
     bias_points: Positive = 81
+    visibility_refinement: Positive = 3
+    """Maps of T_IV, which need one energy only, have this many times the points along μ and B."""
     pristine_mu_points: Positive = 121
     pristine_B_points: Positive = 161
     """Fig. S9 is one wire only, and the same at every preset unless these are set."""
     bias_max: Annotated[float, Field(gt=0, le=1)] = 0.04
     """The maps reach from minus this V_bias to this, in meV."""
-    energy_spacing: Annotated[float, Field(gt=0, le=0.1)] = 0.25e-3
-    """Of the energies that the temperature averages over, in meV: half the dataset's default, as
-    a resonance that falls on a grid point shows as a speckle in a map."""
+    energy_spacing: Annotated[float, Field(gt=0, le=0.1)] = 0.1e-3
+    """Of the energies that the temperature averages over, in meV. It is a fifth of the dataset's
+    default: a narrow resonance that falls on an energy shows as a speckle in a map."""
+    S5_energy_spacing: Annotated[float, Field(gt=0, le=0.1)] = 0.25e-3
+    """The same for Fig. S5, which has a whole map of energy grids for each wire."""
 
 
 class Config(_Section):

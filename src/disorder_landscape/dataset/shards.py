@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from multiprocessing import get_context
 from pathlib import Path
 
+import h5py
 import xarray as xr
 
 from disorder_landscape.arguments import ArgumentError, require
@@ -85,14 +86,15 @@ def shard_is_done(config: DatasetConfig, folder: Path, shard: int) -> bool:
     if not path.exists():
         return False
     try:
-        with xr.open_dataset(path, engine="h5netcdf") as file:
-            attrs, held = file.attrs, file.sizes.get("realization", 0)
-    except (OSError, ValueError, KeyError, RuntimeError):
+        with h5py.File(path) as file:  # a thirtieth of the time that xarray takes to open it
+            made_with, held = file.attrs.get("config_hash"), len(file["realization"])
+    except (OSError, KeyError, RuntimeError):
         must = "hold only whole shards"
         raise ArgumentError("dataset", must, f"'{path}' is damaged; delete it") from None
-    same = attrs.get("config_hash") == config.hash
     must = "be a folder of this configuration's shards"
-    require(same, "dataset", must, f"'{path}' was made with another configuration")
+    require(
+        made_with == config.hash, "dataset", must, f"'{path}' was made with another configuration"
+    )
     return held >= len(shard_indices(config, shard))
 
 
@@ -152,8 +154,8 @@ def _one_thread() -> None:
     os.environ.update(OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1")
 
 
-def read_shards(config: DatasetConfig, folder: Path) -> xr.Dataset:
-    """Read the whole dataset into memory.
+def read_shards(config: DatasetConfig, folder: Path, first: int = 0) -> xr.Dataset:
+    """Read the dataset, from realization `first` on, into memory.
 
     Raises
     ------
@@ -163,10 +165,12 @@ def read_shards(config: DatasetConfig, folder: Path) -> xr.Dataset:
     now = status(config, folder)
     must = f"hold {now.realizations_in_all} realizations (run `landscape generate`)"
     require(now.complete, "dataset", must, f"'{folder}' holds {now.realizations}")
+    first_shard = first // config.shard_size
     parts = [
         read_dataset(shard_path(folder, k), VARIABLES).isel(
             realization=slice(len(shard_indices(config, k)))
         )
-        for k in range(shard_count(config))
+        for k in range(first_shard, shard_count(config))
     ]
-    return xr.concat(parts, "realization", data_vars="minimal", combine_attrs="drop_conflicts")
+    whole = xr.concat(parts, "realization", data_vars="minimal", combine_attrs="drop_conflicts")
+    return whole.isel(realization=slice(first - first_shard * config.shard_size, None))
