@@ -8,17 +8,17 @@ from itertools import combinations
 import numpy as np
 import pytest
 import xarray as xr
-from command import Request
 from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 from matplotlib.text import Text
-from plotting import COLUMN, FULL_WIDTH, paper_style
 from scipy.constants import physical_constants
 
 import disorder_landscape as dl
+from command import Request
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.chain import preset_config
 from disorder_landscape.physics.disorder import cosine_components
+from plotting import COLUMN, FULL_WIDTH, paper_style
 
 SCRIPTS = {
     "figure_1": "figure_1_network",
@@ -187,8 +187,9 @@ def test_input_and_prediction_share_one_norm(figure, drawn):
 
 
 def _is_map(axes) -> bool:
-    """Colour bars have a mesh too, but a map's is rasterised."""
-    return any(isinstance(c, QuadMesh) and c.get_rasterized() for c in axes.collections)
+    """Colour bars have a mesh too."""
+    meshes = any(isinstance(collection, QuadMesh) for collection in axes.collections)
+    return meshes and axes.get_label() != "<colorbar>"
 
 
 def test_visibility_is_of_the_wires_and_within_its_range(drawn, evaluation, config):

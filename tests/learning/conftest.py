@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
-from synthetic import synthetic_dataset, tiny_config
 
 from disorder_landscape.config import Config
 from disorder_landscape.learning.training import train
+from synthetic import synthetic_dataset, tiny_config
 
 
 @pytest.fixture(scope="session")

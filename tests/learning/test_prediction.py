@@ -6,7 +6,6 @@ import shutil
 
 import numpy as np
 import pytest
-from synthetic import synthetic_dataset, tiny_config
 
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.learning.mirror import mirrored_labels
@@ -15,6 +14,7 @@ from disorder_landscape.learning.networks import build_network
 from disorder_landscape.learning.prediction import predict
 from disorder_landscape.learning.scaling import LabelScaler, label_names
 from disorder_landscape.physics.disorder import potential_from_components
+from synthetic import synthetic_dataset, tiny_config
 
 
 @pytest.fixture(scope="module")

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from synthetic import synthetic_dataset, tiny_config
 
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.learning import training
 from disorder_landscape.learning.curves import read_curves
 from disorder_landscape.learning.model import load_model
 from disorder_landscape.learning.training import schedule, split, train
+from synthetic import synthetic_dataset, tiny_config
 
 SHORT = tiny_config(realizations=40, width_fraction=0.01, epochs=(2, 1))
 

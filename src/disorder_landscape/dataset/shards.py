@@ -86,7 +86,7 @@ def shard_is_done(config: DatasetConfig, folder: Path, shard: int) -> bool:
     if not path.exists():
         return False
     try:
-        with h5py.File(path) as file:  # a thirtieth of the time that xarray takes to open it
+        with h5py.File(path) as file:
             made_with, held = file.attrs.get("config_hash"), len(file["realization"])
     except (OSError, KeyError, RuntimeError):
         must = "hold only whole shards"
