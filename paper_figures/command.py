@@ -1,0 +1,129 @@
+"""The command line that all figure scripts share, and the files they write."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from disorder_landscape.arguments import ArgumentError
+from disorder_landscape.chain import evaluation, preset_config
+from disorder_landscape.config import Config
+from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
+from disorder_landscape.files import replacing
+from plotting import paper_style
+
+EVALUATED = [
+    f"{name}{end}" for name in ("components", "alpha", "potential") for end in ("", "_predicted")
+]
+"""What an evaluation file must hold."""
+
+
+@dataclass(frozen=True)
+class Request:
+    """What a figure is asked to show: a preset's configuration and test realizations."""
+
+    preset: str
+    config: Config
+    evaluation_file: Path | None = None
+    """Test realizations and predictions to draw instead of the preset's own."""
+
+    def evaluation(self) -> xr.Dataset:
+        """Return the test realizations and predictions, making first what is missing.
+
+        Returns
+        -------
+        xarray.Dataset
+            components (realization, component) and potential (realization, site) in meV, alpha
+            (realization) in meV nm, each also as …_predicted; scores as attributes.
+        """
+        if self.evaluation_file is not None:
+            return read_dataset(self.evaluation_file, EVALUATED)
+        return evaluation(self.preset)
+
+
+def figure_script(
+    name: str,
+    data: Callable[[Request], xr.Dataset],
+    draw: Callable[[xr.Dataset], Figure],
+    description: str,
+    arguments: Sequence[str] | None = None,
+    preset: str = "small",
+) -> None:
+    """Run one figure's script: write <name>.nc, <name>.pdf and <name>.png.
+
+    Parameters
+    ----------
+    name : str
+        Like figure_3, the names of the files.
+    data : callable
+        Makes all that is drawn.
+    draw : callable
+        Draws it, from these data alone.
+    description : str
+        For --help.
+    arguments : sequence of str, optional
+        The command line; by default the process's.
+    preset : str
+        Preset to draw if none is named.
+    """
+    script = Path(sys.modules[data.__module__].__file__ or name).name
+    options = _parse(script, description, preset, arguments)
+    try:
+        request = Request(options.preset, preset_config(options.preset), options.evaluation)
+        drawn = data(request)
+        command = f"python paper_figures/{script} --preset {options.preset}"
+        attrs = {**provenance(command), "preset": options.preset}
+        write_dataset(drawn, options.output / f"{name}.nc", attrs)
+        with paper_style():
+            figure = draw(drawn)
+            for ending in ("pdf", "png"):
+                _save(figure, options.output / f"{name}.{ending}")
+    except ArgumentError as error:
+        print(f"{script}: {error}", file=sys.stderr)
+        sys.exit(2)
+    print(f"wrote {options.output / name}.pdf, .png and .nc (the plotted arrays)")
+
+
+def _parse(
+    script: str, description: str, preset: str, arguments: Sequence[str] | None
+) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        prog=script,
+        description=description,
+        epilog=f"example: python paper_figures/{script} --preset {preset} --output build/figures",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "--preset",
+        default=preset,
+        help="run to draw: a name in configs/, or shipped (default: %(default)s); "
+        "what is missing of it is made first",
+    )
+    parser.add_argument(
+        "--output",
+        type=Path,
+        default=Path("build/figures"),
+        metavar="FOLDER",
+        help="where to write PDF, PNG and netCDF (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--evaluation",
+        type=Path,
+        metavar="FILE",
+        help="draw these test realizations and predictions (an evaluation.nc) "
+        "instead of the preset's",
+    )
+    return parser.parse_args(arguments)
+
+
+def _save(figure: Figure, path: Path) -> None:
+    """Write a picture; the same figure gives the same bytes."""
+    no_date = {"CreationDate": None} if path.suffix == ".pdf" else {}
+    with replacing(path) as temporary:
+        figure.savefig(temporary, metadata=no_date)

@@ -1,0 +1,92 @@
+"""Maps of the conductance matrix, input above prediction, for Figures 3 and S5."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from disorder_landscape.physics.transport import CONDUCTANCES
+from plotting import (
+    FULL_WIDTH,
+    LABELS,
+    LOCAL,
+    colour_bar,
+    conductance_scale,
+    draw_map,
+    inches,
+    keep_labels_inside,
+    label_rows,
+    outer_labels,
+    write,
+)
+from wires import ROWS, alphas, letters
+
+LEFT = {"bias": 0.74, "mu": 0.56}
+RIGHT, BETWEEN_BLOCKS, GAP = 0.08, 0.22, 0.05
+"""Margins, and gaps between blocks and between panels, in inches."""
+TITLE, BARS = 0.36, 0.83
+"""Room above and below the panels of a block, in inches."""
+
+
+def draw_conductance_blocks(data: xr.Dataset, y: str) -> Figure:
+    """Draw a block of 2 × 4 maps per realization, two blocks side by side.
+
+    Input and prediction share the norm of each conductance.
+
+    Parameters
+    ----------
+    data : Dataset
+        G_LL … G_RL (realization, row, B, y) in e²/h and alpha (realization, row).
+    y : {"bias", "mu"}
+        Upward axis.
+    """
+    panel = (FULL_WIDTH - LEFT[y] - RIGHT - BETWEEN_BLOCKS - 6 * GAP) / 8
+    block_width = 4 * panel + 3 * GAP
+    block_height = TITLE + 2 * panel + GAP + BARS
+    figure = Figure(figsize=(FULL_WIDTH, block_height * -(-data.sizes["realization"] // 2)))
+    for i, letter in enumerate(letters(data)):
+        left = LEFT[y] + (i % 2) * (block_width + BETWEEN_BLOCKS)
+        top = figure.get_figheight() - (i // 2) * block_height
+        write(figure, left, top - 0.03, f"({letter})  {alphas(data, i)}")
+        panels = _draw_maps(figure, data.isel(realization=i), y, left, top - TITLE, panel)
+        if i % 2 == 0:
+            label_rows(panels, ROWS, y)
+        else:  # the block to the left is labelled
+            for axes in panels[:, 0]:
+                axes.set_ylabel("")
+                axes.tick_params(labelleft=False)
+        _draw_colour_bars(figure, data.isel(realization=i), left, top - block_height + 0.39, panel)
+    return figure
+
+
+def _draw_maps(
+    figure: Figure, data: xr.Dataset, y: str, left: float, top: float, panel: float
+) -> np.ndarray:
+    """Draw one realization's maps; return their axes, shape (row, column)."""
+    panels = np.empty((len(ROWS), len(CONDUCTANCES)), dtype=object)
+    for (row, column), _ in np.ndenumerate(panels):
+        name = CONDUCTANCES[column]
+        bottom = top - panel - row * (panel + GAP)
+        axes = inches(figure, left + column * (panel + GAP), bottom, panel, panel)
+        draw_map(axes, data[name].isel(row=row), y, *conductance_scale(data[name]))
+        if row == 0:
+            axes.set_title(LABELS[name])
+        panels[row, column] = axes
+    outer_labels(panels, "B", y)
+    return panels
+
+
+def _draw_colour_bars(
+    figure: Figure, data: xr.Dataset, left: float, bottom: float, panel: float
+) -> None:
+    """Draw one colour bar below each conductance's maps."""
+    for column, name in enumerate(CONDUCTANCES):
+        place = (left + column * (panel + GAP) + 0.05, bottom, panel - 0.1, 0.07)
+        scale = conductance_scale(data[name])
+        unit = 1.0 if name in LOCAL else 1e-3
+        bar = colour_bar(figure, place, *scale, data[name], unit)
+        keep_labels_inside(bar.ax.xaxis)
+    pair = 2 * panel + GAP
+    for i, label in enumerate(("$G$ [$e^2/h$]", r"$G$ [$10^{-3}\,e^2/h$]")):
+        write(figure, left + i * (pair + GAP) + pair / 2, bottom - 0.17, label, ha="center")

@@ -1,0 +1,180 @@
+"""Pieces that the figures share: sizes, labels, colour scales, maps and colour bars."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+import xarray as xr
+from matplotlib import style
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import QuadMesh
+from matplotlib.colorbar import Colorbar
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+
+COLUMN, FULL_WIDTH = 3.404, 7.06
+"""REVTeX's widths in inches."""
+
+LABELS = {
+    "G_LL": r"$G_\mathrm{LL}$",
+    "G_RR": r"$G_\mathrm{RR}$",
+    "G_LR": r"$G_\mathrm{LR}$",
+    "G_RL": r"$G_\mathrm{RL}$",
+    "mu": r"$\mu$ [meV]",
+    "B": r"$B$ [T]",
+    "bias": r"$V_\mathrm{bias}$ [meV]",
+    "T_IV": r"$T_\mathrm{IV}$",
+}
+"""How each quantity is printed."""
+LOCAL = ("G_LL", "G_RR")
+TICKS = {"B": (0.0, 0.4, 0.8), "mu": (0.0, 0.3, 0.6), "bias": (-0.04, 0.0, 0.04)}
+
+INPUT, PREDICTION = "#0072B2", "#D55E00"
+"""Blue and vermilion of Okabe and Ito, told apart by colour-blind readers and in grey."""
+LOCAL_COLOURS, NONLOCAL_COLOURS, VISIBILITY_COLOURS = "viridis", "RdBu_r", "PuOr"
+CLIPPED_SHARE = 0.01
+"""Share of the nonlocal conductances that a colour scale may cut off: sharp peaks hide the rest."""
+
+
+def paper_style() -> AbstractContextManager[None]:
+    """Return the context in which figures are drawn and saved."""
+    context: AbstractContextManager[None] = style.context(
+        Path(__file__).with_name("style.mplstyle")
+    )
+    return context
+
+
+def inches(figure: Figure, left: float, bottom: float, width: float, height: float) -> Axes:
+    """Add axes whose place is given in inches from the figure's lower left corner."""
+    w, h = figure.get_size_inches()
+    axes: Axes = figure.add_axes((left / w, bottom / h, width / w, height / h))
+    return axes
+
+
+def write(figure: Figure, left: float, top: float, text: str, ha: str = "left") -> None:
+    """Write text below a place given in inches."""
+    w, h = figure.get_size_inches()
+    figure.text(left / w, top / h, text, ha=ha, va="top")
+
+
+def conductance_scale(G: xr.DataArray) -> tuple[Normalize, str]:
+    """Return norm and colour map for all maps of one conductance.
+
+    Local ones are drawn from 0 to their maximum, nonlocal ones symmetrically about 0, their
+    sharpest peaks cut off.
+    """
+    if G.name in LOCAL:
+        return Normalize(0.0, _rounded_up(float(G.max()))), LOCAL_COLOURS
+    limit = _rounded_up(float(np.quantile(np.abs(G), 1 - CLIPPED_SHARE)))
+    return Normalize(-limit, limit), NONLOCAL_COLOURS
+
+
+def _rounded_up(value: float) -> float:
+    """Return the next larger round number, for colour bars to end at."""
+    if value <= 0:
+        return 1.0
+    power = 10.0 ** np.floor(np.log10(value))
+    steps = (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8, 9, 10)
+    return next(float(f"{step * power:.2g}") for step in steps if value <= step * power * 1.001)
+
+
+def draw_map(axes: Axes, values: xr.DataArray, y: str, norm: Normalize, colours: str) -> QuadMesh:
+    """Draw a map over B and y, one cell centred on each grid point, in a rasterised mesh."""
+    axes.set_label(str(values.name))
+    grid = values.transpose(y, "B")
+    mesh = axes.pcolormesh(
+        grid["B"], grid[y], grid, norm=norm, cmap=colours, shading="nearest", rasterized=True
+    )
+    set_ticks(axes, "x", "B", grid["B"].to_numpy())
+    set_ticks(axes, "y", y, grid[y].to_numpy())
+    return mesh
+
+
+def set_ticks(axes: Axes, which: str, quantity: str, grid: np.ndarray) -> None:
+    """Put ticks at round numbers within the grid, the outer labels within the axes' extent."""
+    ticks = [tick for tick in TICKS[quantity] if grid[0] - 1e-9 <= tick <= grid[-1] + 1e-9]
+    axis = axes.xaxis if which == "x" else axes.yaxis
+    axis.set_ticks(ticks, [f"{tick:g}".replace("-", "−") for tick in ticks])
+    keep_labels_inside(axis)
+
+
+def keep_labels_inside(axis: Axis) -> None:
+    """Align the outer two tick labels inwards, so that neighbouring panels' do not collide."""
+    labels = axis.get_ticklabels()
+    if len(labels) > 1:
+        for label, horizontal, vertical in (
+            (labels[0], "left", "bottom"),
+            (labels[-1], "right", "top"),
+        ):
+            if axis.axis_name == "x":
+                label.set_horizontalalignment(horizontal)
+            else:
+                label.set_verticalalignment(vertical)
+
+
+def outer_labels(panels: np.ndarray, x: str, y: str) -> None:
+    """Label shared axes at the outside only.
+
+    Parameters
+    ----------
+    panels : array of Axes, shape (row, column)
+    x, y : str
+        Names of the quantities.
+    """
+    for (row, column), axes in np.ndenumerate(panels):
+        bottom, left = row == panels.shape[0] - 1, column == 0
+        axes.tick_params(labelbottom=bottom, labelleft=left)
+        axes.set_xlabel(LABELS[x] if bottom else "")
+        axes.set_ylabel(LABELS[y] if left else "")
+
+
+def label_rows(panels: np.ndarray, rows: Sequence[str], y: str) -> None:
+    """Write what each row of panels shows beside the label of its upward axis."""
+    for row, axes in zip(rows, panels[:, 0], strict=True):
+        axes.set_ylabel(rf"$\it{{{row}}}$" + "\n" + LABELS[y], linespacing=1.1)
+
+
+def colour_bar(
+    figure: Figure,
+    place: Sequence[float],
+    norm: Normalize,
+    colours: str,
+    values: xr.DataArray,
+    unit: float = 1.0,
+) -> Colorbar:
+    """Draw a colour bar whose ends are arrows where values lie beyond them.
+
+    Parameters
+    ----------
+    figure : Figure
+    place : left, bottom, width, height
+        In inches; upright if it is higher than wide.
+    norm, colours
+        Of the maps.
+    values : DataArray
+        All that is drawn with this norm.
+    unit : float
+        Tick labels are in this unit.
+    """
+    margin = 1e-6 * (norm.vmax - norm.vmin)  # rounding is no clipping
+    low = float(values.min()) < norm.vmin - margin
+    high = float(values.max()) > norm.vmax + margin
+    extend = {(0, 0): "neither", (1, 0): "min", (0, 1): "max", (1, 1): "both"}[low, high]
+    upright = place[3] > place[2]
+    bar = figure.colorbar(
+        ScalarMappable(norm, mpl.colormaps[colours]),
+        cax=inches(figure, *place),
+        orientation="vertical" if upright else "horizontal",
+        extend=extend,
+        extendfrac=0.08,
+    )
+    bar.outline.set_linewidth(0.6)
+    ticks = sorted({norm.vmin, 0.0, norm.vmax})
+    bar.set_ticks(ticks, labels=[f"{tick / unit:g}".replace("-", "−") for tick in ticks])
+    return bar
