@@ -19,7 +19,7 @@ from disorder_landscape import Nanowire
 from plotting import FULL_WIDTH, INPUT, PREDICTION, inches, keep_labels_inside, write
 from wires import drawn_realizations, in_rows, letters
 
-LEFT, RIGHT, TOP, GAP = 0.52, 0.08, 0.42, 0.1
+LEFT, RIGHT, TOP, GAP = 0.58, 0.08, 0.42, 0.1
 COMPONENTS, POTENTIAL = (2.12, 1.1), (0.38, 1.3)
 """Bottom and height of the panels, in inches."""
 HEIGHT = COMPONENTS[0] + COMPONENTS[1] + TOP
