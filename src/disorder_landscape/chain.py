@@ -27,7 +27,7 @@ SHIPPED_TEST_SET = REPOSITORY / "data_small" / "five_components_and_alpha_test.n
 
 @dataclass(frozen=True)
 class Run:
-    """A configuration with the folder of its results; None where the shipped data are used."""
+    """A configuration and the folder of its results."""
 
     name: str
     config: Config
@@ -91,6 +91,9 @@ def generate(run: Run, workers: int) -> None:
 
 def train(run: Run) -> None:
     """Train the run's network, or go on with it; generate must have been called."""
+    if _is_trained(run):  # before the dataset is read and TensorFlow imported
+        print(f"'{run.model_folder}' holds this very training, finished: nothing to do.")
+        return
     from disorder_landscape.learning.training import train as train_network
 
     dataset = shards.read_shards(run.config.dataset, run.dataset_folder)
@@ -159,6 +162,21 @@ def read_test_set(run: Run) -> xr.Dataset:
 
     _, test = split(run.config.dataset.realizations, run.config.training.test_fraction)
     return shards.read_shards(run.config.dataset, run.dataset_folder, test.start)
+
+
+def _is_trained(run: Run) -> bool:
+    from disorder_landscape.learning.model import load_model_config
+
+    if not (run.model_folder / "metrics.json").exists():
+        return False
+    there = load_model_config(run.model_folder)
+    ours = run.config
+    return (there.dataset.hash, there.dataset.realizations, there.network, there.training) == (
+        ours.dataset.hash,
+        ours.dataset.realizations,
+        ours.network,
+        ours.training,
+    )
 
 
 def _fingerprint(run: Run) -> str:

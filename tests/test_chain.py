@@ -1,0 +1,121 @@
+"""The whole chain of the preset "smoke": dataset, training, evaluation, through the commands."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from disorder_landscape import ArgumentError, Nanowire, chain, conductance, predict
+from disorder_landscape.dataset.realizations import realization
+from disorder_landscape.learning.model import load_model_config
+
+CONFIG = "configs/smoke.toml"
+R2_TO_REACH = 0.87
+"""Measured: 0.919; the paper's network at 1/16 of its filters on 1,080 short wires."""
+
+
+def predicted_wire(one):
+    return Nanowire(one.potential_predicted, alpha=one.alpha_predicted.item())
+
+
+def landscape(*arguments):
+    command = [str(Path(sys.executable).with_name("landscape")), *map(str, arguments)]
+    return subprocess.run(command, check=True, capture_output=True, text=True)
+
+
+@pytest.fixture(scope="module")
+def build(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("build")
+    for command in ("generate", "train", "evaluate"):
+        landscape(command, "--config", CONFIG, "--build", folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def run(build):
+    return chain.open_run(CONFIG, build)
+
+
+def test_the_reduced_run_reaches_its_score(run):
+    evaluation = xr.load_dataset(run.evaluation_file, engine="h5netcdf")
+    assert evaluation.attrs["R2"] > R2_TO_REACH
+    assert evaluation.sizes["realization"] == 120
+    error = evaluation.potential_predicted - evaluation.potential
+    without_mean = error - error.mean("site")
+    assert evaluation.attrs["delta_V"] == pytest.approx(without_mean.std().item(), rel=0.05)
+    assert evaluation.attrs["delta_alpha"] == pytest.approx(
+        (evaluation.alpha_predicted - evaluation.alpha).std().item()
+    )
+
+
+def test_the_predicted_wire_conducts_like_the_true_one(run):
+    """The point of the paper: the prediction's conductance is closer than another wire's."""
+    evaluation = xr.load_dataset(run.evaluation_file, engine="h5netcdf")
+    closer = 0
+    for i in range(10):
+        true, other, guess = (
+            conductance(wire, run.config.dataset.mu, run.config.dataset.B).to_array().to_numpy()
+            for wire in (
+                realization(run.config.dataset, 1080 + i).wire,
+                realization(run.config.dataset, 1081 + i).wire,
+                predicted_wire(evaluation.isel(realization=i)),
+            )
+        )
+        closer += np.linalg.norm(true - guess) < 0.7 * np.linalg.norm(true - other)
+    assert closer >= 9
+
+
+def test_status_tells_what_is_there(run, build):
+    said = landscape("status", "--config", CONFIG, "--build", build).stdout
+    assert "1200 of 1200 realizations in 24 of 24 shards" in said
+    assert "trained" in said
+    assert "evaluation  there" in said
+
+
+def test_a_finished_chain_is_left_alone(run, build):
+    before = (run.model_folder / "network.keras").stat().st_mtime_ns
+    said = landscape("train", "--config", CONFIG, "--build", build)
+    assert "nothing to do" in said.stdout + said.stderr
+    assert (run.model_folder / "network.keras").stat().st_mtime_ns == before
+
+
+def test_predict_from_a_file_is_predict_from_the_library(run, tmp_path):
+    config = run.config.dataset
+    wire = realization(config, 1100).wire
+    G = conductance(wire, config.mu, config.B, config.bias, energy_spacing=config.energy_spacing)
+    G.to_netcdf(tmp_path / "wire.nc", engine="h5netcdf")
+    landscape("predict", tmp_path / "wire.nc", "--model", run.model_folder, "-o", tmp_path / "Y.nc")
+    Y = xr.load_dataset(tmp_path / "Y.nc", engine="h5netcdf")
+    expected = predict(run.model_folder, G)
+    np.testing.assert_allclose(Y.components, expected.components, atol=1e-6)
+    assert Y.potential.sizes == {"site": 100}
+    stored = xr.load_dataset(run.evaluation_file, engine="h5netcdf").sel(realization=1100)
+    np.testing.assert_allclose(Y.components, stored.components_predicted, atol=1e-3)
+
+
+def test_a_measurement_on_another_grid_is_refused(run):
+    config = run.config.dataset
+    G = conductance(realization(config, 0).wire, config.mu[:-1], config.B, config.bias)
+    with pytest.raises(ArgumentError, match="it differs in mu"):
+        predict(run.model_folder, G)
+
+
+def test_the_shipped_model_predicts_the_shipped_test_set(tmp_path):
+    shipped = chain.evaluation("shipped", tmp_path)
+    assert load_model_config(chain.SHIPPED_MODEL).dataset.realizations == 8000
+    assert shipped.sizes["realization"] == 200
+    assert shipped.attrs["R2"] > 0.99
+
+
+def test_the_shipped_files_are_those_of_the_checksums():
+    subprocess.run(
+        ["sha256sum", "--check", "--quiet", "SHA256SUMS"],
+        cwd=chain.REPOSITORY / "data_small",
+        check=True,
+    )
+    files = (chain.REPOSITORY / "data_small").rglob("*")
+    total = sum(path.stat().st_size for path in files if path.is_file())
+    assert total < 40e6
