@@ -81,7 +81,7 @@ def _rounded_up(value: float) -> float:
         return 1.0
     power = 10.0 ** np.floor(np.log10(value))
     steps = (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8, 9, 10)
-    return next(float(f"{step * power:.2g}") for step in steps if value <= step * power * 1.001)
+    return next(float(f"{step * power:.2g}") for step in steps if value <= step * power)
 
 
 def draw_map(axes: Axes, values: xr.DataArray, y: str, norm: Normalize, colours: str) -> QuadMesh:
