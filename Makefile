@@ -44,8 +44,9 @@ $(READY):
 figures: $(if $(filter shipped,$(PRESET)),,evaluate) $(FIGURES) ## dataset, training and every figure of the paper, into build/figures
 	@echo "make figures: done in $$(($$(date +%s) - $(STARTED))) s (PRESET=$(PRESET)), see build/figures"
 
+# Figure 1 is the paper's own network whatever the preset; --preset would draw the preset's.
 $(FIGURES): figure-%: $(READY)
-	$(PYTHON_HERE) $(wildcard paper_figures/figure_$*_*.py) --preset $(PRESET)
+	$(PYTHON_HERE) $(wildcard paper_figures/figure_$*_*.py) $(if $(filter 1,$*),,--preset $(PRESET))
 
 generate: $(READY) ## simulate the dataset of PRESET
 	$(LANDSCAPE) generate --config $(CONFIG)

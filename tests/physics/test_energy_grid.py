@@ -1,0 +1,46 @@
+"""The error of the energy grid at finite temperature, the largest of the simulator's."""
+
+import numpy as np
+import pytest
+from random_wires import random_wire
+
+from disorder_landscape import conductance
+from disorder_landscape.physics.parameters import BIAS
+from disorder_landscape.physics.thermal import ENERGY_SPACING
+
+CONVERGED = 4e-6  # meV
+
+
+def errors(wires, points, spacings):
+    """Return the errors at 50 mK of each spacing, shape (spacing, …), over random (μ, B)."""
+    rng = np.random.default_rng(3)
+    found = []
+    for index in range(wires):
+        wire = random_wire(index)
+        mu, B = np.sort(rng.uniform(0, 0.6, points)), np.sort(rng.uniform(0, 0.8, points))
+        exact = conductance(wire, mu, B, BIAS, energy_spacing=CONVERGED).to_array().to_numpy()
+        found.append(
+            [
+                conductance(wire, mu, B, BIAS, energy_spacing=h).to_array().to_numpy() - exact
+                for h in spacings
+            ]
+        )
+    return np.stack(found, axis=1)
+
+
+def test_the_default_spacing_has_the_stated_error():
+    error = errors(wires=6, points=3, spacings=[ENERGY_SPACING])
+    assert np.sqrt((error**2).mean()) < 0.006
+    assert abs(error).max() < 0.15
+
+
+@pytest.mark.slow
+def test_the_table_of_errors():
+    """The README's table: pytest -m slow -s tests/physics/test_energy_grid.py."""
+    spacings = [1.77e-3, 1e-3, 0.5e-3, 0.25e-3, 0.1e-3, 0.03e-3]
+    error = errors(wires=40, points=6, spacings=spacings)
+    rms = np.sqrt((error**2).mean(axis=tuple(range(1, error.ndim))))
+    print(f"\n{error[0].size} conductances")
+    for h, one, e in zip(spacings, rms, error, strict=True):
+        print(f"| {1e3 * h:g} | {one:.5f} | {abs(e).max():.4f} |")
+    assert (np.diff(rms) < 0).all()
