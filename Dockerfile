@@ -8,8 +8,8 @@ RUN apt-get update \
 WORKDIR /artifact
 COPY Makefile pyproject.toml requirements*.lock LICENSE ./
 COPY scripts scripts
-# The sources come later, so that a change in them does not build Kwant again.  Compiled now, because
-# the user of the second stage cannot write into .venv.
+# The sources come later, so that a change in them does not build Kwant again.  Bytecode is written now,
+# because the user of the second stage cannot write into .venv.
 RUN mkdir -p src/disorder_landscape \
  && touch README.md src/disorder_landscape/__init__.py \
  && UV_COMPILE_BYTECODE=1 make setup

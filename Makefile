@@ -14,7 +14,7 @@ unexport PYTHONPATH PYTHONHOME
 SET_UP_FROM := requirements.lock requirements-uv.lock requirements-zig.lock pyproject.toml scripts/set_up.sh
 READY := .venv/ready-$(shell cat $(SET_UP_FROM) | sha256sum | cut -c 1-12)
 
-PYTHON_HERE := .venv/bin/python
+VENV_PYTHON := .venv/bin/python
 LANDSCAPE := .venv/bin/landscape
 CONFIG := configs/$(PRESET).toml
 
@@ -46,7 +46,7 @@ figures: $(if $(filter shipped,$(PRESET)),,evaluate) $(FIGURES) ## dataset, trai
 
 # Figure 1 is the paper's own network whatever the preset; --preset would draw the preset's.
 $(FIGURES): figure-%: $(READY)
-	$(PYTHON_HERE) $(wildcard paper_figures/figure_$*_*.py) $(if $(filter 1,$*),,--preset $(PRESET))
+	$(VENV_PYTHON) $(wildcard paper_figures/figure_$*_*.py) $(if $(filter 1,$*),,--preset $(PRESET))
 
 generate: $(READY) ## simulate the dataset of PRESET
 	$(LANDSCAPE) generate --config $(CONFIG)
@@ -61,7 +61,7 @@ bench: $(READY) ## time the fast solver against Kwant
 	$(LANDSCAPE) bench
 
 test: $(READY) ## run the tests
-	$(PYTHON_HERE) -m pytest -n 2
+	$(VENV_PYTHON) -m pytest -n 2
 
 lint: $(READY) ## check style and types
 	.venv/bin/ruff check .
