@@ -12,6 +12,7 @@ from tqdm import tqdm
 from disorder_landscape import Nanowire, conductance, topological_visibility
 from disorder_landscape.dataset.store import provenance, write_dataset
 from disorder_landscape.physics.disorder import disorder_realization
+from disorder_landscape.physics.labels import labelled
 from disorder_landscape.physics.parameters import SITES
 
 SEED = 2024
@@ -34,11 +35,10 @@ def main() -> None:
     for wire in tqdm(wires(), unit=" wires"):
         part = conductance(wire, **GRID, temperature=0, solver="kwant")
         part["T_IV"] = topological_visibility(wire, GRID["mu"], GRID["B"], solver="kwant")
-        potential = {"units": "meV", "long_name": "disorder potential without barriers"}
-        part["potential"] = ("site", wire.potential, potential)
-        part["alpha"] = ((), wire.alpha, {"units": "meV nm", "long_name": "spin-orbit coupling"})
+        part["potential"] = ("site", wire.potential)
+        part["alpha"] = wire.alpha
         parts.append(part)
-    reference = xr.concat(parts, "realization")
+    reference = labelled(xr.concat(parts, "realization"))
     attrs = {**provenance("python data_small/make_kwant_reference.py"), "seed": SEED}
     write_dataset(reference, Path(__file__).parent / "kwant_reference.nc", attrs)
 

@@ -18,8 +18,9 @@ from tqdm import tqdm
 
 from command import Request, figure_script
 from disorder_landscape import Nanowire, conductance, topological_visibility
-from disorder_landscape.physics.parameters import B_MAX, MU_MAX, SITES, TEMPERATURE, FloatArray
-from disorder_landscape.physics.transport import CONDUCTANCES
+from disorder_landscape.physics.labels import CONDUCTANCES
+from disorder_landscape.physics.parameters import B_MAX, MU_MAX, SITES, TEMPERATURE
+from disorder_landscape.physics.topology import transition_field
 from plotting import (
     FULL_WIDTH,
     LABELS,
@@ -43,11 +44,6 @@ VISIBILITY = (2 * WIDTH + GAP, 1.7)
 """Size of panel (a)."""
 TOP, ROW = 0.24, 1.78
 """Room above the first row and pitch of the rows, in inches."""
-
-
-def transition_field(wire: Nanowire, mu: FloatArray) -> FloatArray:
-    """Return the field in T at which the infinite wire becomes topological, V_Z² = μ² + γ²."""
-    return np.hypot(mu, wire.gamma) / wire.zeeman_per_tesla
 
 
 def data(request: Request) -> xr.Dataset:

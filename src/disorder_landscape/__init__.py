@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.physics.parameters import Nanowire
-from disorder_landscape.physics.transport import conductance, topological_visibility
+from disorder_landscape.physics.topology import topological_visibility
+from disorder_landscape.physics.transport import conductance
 
 if TYPE_CHECKING:
     from disorder_landscape.learning.prediction import predict

@@ -18,6 +18,7 @@ from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.config import Config, load_config
 from disorder_landscape.dataset import shards
 from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
+from disorder_landscape.physics.labels import labelled
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 SHIPPED = "shipped"
@@ -129,6 +130,7 @@ def evaluate(run: Run) -> xr.Dataset:
         [test[list(names)], predicted[list(names)].rename({n: f"{n}_predicted" for n in names})],
         combine_attrs="drop",
     )
+    evaluation = labelled(evaluation)
     attrs = {
         **provenance(f"landscape evaluate ({run.name})"),
         "fingerprint": _fingerprint(run),

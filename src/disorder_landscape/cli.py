@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
@@ -31,11 +33,16 @@ def main() -> None:
     except ArgumentError as error:
         print(f"landscape: {error}", file=sys.stderr)
         sys.exit(2)
+
+
+@contextmanager
+def resumable() -> Iterator[None]:
+    """Tell whoever presses Ctrl-C how to go on."""
+    try:
+        yield
     except KeyboardInterrupt:
-        print(
-            "landscape: interrupted; what is done stays, the same command goes on", file=sys.stderr
-        )
-        sys.exit(130)
+        print("\nlandscape: interrupted; the same command goes on from here", file=sys.stderr)
+        raise typer.Exit(130) from None
 
 
 @app.command()
@@ -117,7 +124,8 @@ def generate(config: ConfigFile, build: Build = Path("build"), workers: Workers 
     """
     from disorder_landscape import chain
 
-    chain.generate(chain.open_run(config, build), workers)
+    with resumable():
+        chain.generate(chain.open_run(config, build), workers)
 
 
 @app.command()
@@ -149,7 +157,8 @@ def train(config: ConfigFile, build: Build = Path("build")) -> None:
     """
     from disorder_landscape import chain
 
-    chain.train(chain.open_run(config, build))
+    with resumable():
+        chain.train(chain.open_run(config, build))
 
 
 @app.command()
@@ -184,7 +193,7 @@ def predict(
     """
     from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
     from disorder_landscape.learning.prediction import predict as predict_labels
-    from disorder_landscape.physics.transport import CONDUCTANCES
+    from disorder_landscape.physics.labels import CONDUCTANCES
 
     Y = predict_labels(model, read_dataset(measurement, CONDUCTANCES)[list(CONDUCTANCES)])
     write_dataset(Y, output, provenance(" ".join(["landscape", *sys.argv[1:]])))

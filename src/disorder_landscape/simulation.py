@@ -11,13 +11,10 @@ import xarray as xr
 from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.dataset.store import read_dataset
 from disorder_landscape.files import replacing
+from disorder_landscape.physics.labels import CONDUCTANCES, labelled
 from disorder_landscape.physics.parameters import FloatArray, Nanowire, checked_potential
-from disorder_landscape.physics.transport import (
-    CONDUCTANCES,
-    Progress,
-    conductance,
-    topological_visibility,
-)
+from disorder_landscape.physics.topology import topological_visibility
+from disorder_landscape.physics.transport import Progress, conductance
 
 
 def read_potential(path: Path, sites: int) -> FloatArray:
@@ -107,14 +104,10 @@ def simulate_wire(
         progress=progress,
     )
     result["T_IV"] = topological_visibility(wire, grids["mu"], grids["B"], solver=solver)
-    result["potential"] = (
-        "site",
-        wire.potential,
-        {"units": "meV", "long_name": "disorder potential without barriers"},
-    )
+    result["potential"] = ("site", wire.potential)
     for name in ("alpha", "mass", "lattice", "g", "gamma", "delta0", "barrier", "lead_mu"):
         result.attrs[name] = getattr(wire, name)
-    return result
+    return labelled(result)
 
 
 def check_plot(path: Path) -> None:

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from random_wires import random_wire
 
 from disorder_landscape import conductance
 from disorder_landscape.physics.parameters import BIAS
 from disorder_landscape.physics.thermal import ENERGY_SPACING
+from random_wires import random_wire
 
 CONVERGED = 4e-6  # meV
 

@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose
 from disorder_landscape import Nanowire, conductance, topological_visibility
 from disorder_landscape.physics import hamiltonian, kwant_solver
 from disorder_landscape.physics.parameters import BIAS
+from disorder_landscape.physics.topology import transition_field
 from random_wires import energies, fields, mus, random_wire, seeds
 
 KNOWN = [  # μ, B, ω, G_LL, G_RL, det r of the pristine wire at α = 8, from PHYSICS.md
@@ -98,7 +99,7 @@ def test_zero_bias_conductance_needs_no_choice_of_the_sign_of_zero():
 def test_the_bulk_transition_is_where_theory_says(mu):
     """In a long pristine wire det r changes sign at V_Z² = μ² + γ²."""
     wire = Nanowire(np.zeros(4000))
-    critical = np.hypot(mu, wire.gamma) / wire.zeeman_per_tesla
+    critical = transition_field(wire, mu)
     T = topological_visibility(wire, mu, critical * np.array([0.98, 1.02]), barrier=False)
     assert (T[:, 0, 0] > 0).all()
     assert (T[:, 0, 1] < 0).all()

@@ -10,8 +10,9 @@ import xarray as xr
 
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.physics.disorder import disorder_realization
+from disorder_landscape.physics.labels import CONDUCTANCES, labelled
 from disorder_landscape.physics.parameters import FloatArray, Nanowire
-from disorder_landscape.physics.transport import CONDUCTANCES, LONG_NAMES, conductance
+from disorder_landscape.physics.transport import conductance
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,37 +65,18 @@ def simulate(config: DatasetConfig, indices: Iterable[int]) -> xr.Dataset:
         )
         G[i] = np.stack([of_wire[name] for name in CONDUCTANCES], axis=-1)
     dims = ("realization", "mu", "B", "bias")
-    dataset = xr.Dataset(
-        {
-            **{name: (dims, G[..., i]) for i, name in enumerate(CONDUCTANCES)},
-            "components": (
-                ("realization", "component"),
-                np.array([one.components for one in drawn]),
-                {"units": "meV", "long_name": "disorder components c_1 ... c_n"},
-            ),
-            "alpha": (
-                "realization",
-                np.array([one.alpha for one in drawn]),
-                {"units": "meV nm", "long_name": "spin-orbit coupling"},
-            ),
-            "potential": (
-                ("realization", "site"),
-                np.array([one.potential for one in drawn]),
-                {"units": "meV", "long_name": "disorder potential without barriers"},
-            ),
-        },
-        coords={
-            "realization": ("realization", index, {"units": "1", "long_name": "index"}),
-            "mu": config.mu,
-            "B": config.B,
-            "bias": np.array(config.bias),
-            "component": np.arange(1, config.components + 1),
-            "site": np.arange(config.sites),
-        },
-    )
-    for name, (long_name, units) in LONG_NAMES.items():
-        if name in dataset.variables:
-            dataset[name].attrs.update(long_name=long_name, units=units)
-    for name, long_name in {"component": "number n", "site": "lattice site"}.items():
-        dataset[name].attrs.update(long_name=long_name, units="1")
-    return dataset
+    data = {
+        **{name: (dims, G[..., i]) for i, name in enumerate(CONDUCTANCES)},
+        "components": (("realization", "component"), np.array([one.components for one in drawn])),
+        "alpha": ("realization", np.array([one.alpha for one in drawn])),
+        "potential": (("realization", "site"), np.array([one.potential for one in drawn])),
+    }
+    coords = {
+        "realization": index,
+        "mu": config.mu,
+        "B": config.B,
+        "bias": np.array(config.bias),
+        "component": np.arange(1, config.components + 1),
+        "site": np.arange(config.sites),
+    }
+    return labelled(xr.Dataset(data, coords=coords))

@@ -7,6 +7,7 @@ is a function of the configuration alone, so workers, order and restarts leave n
 from __future__ import annotations
 
 import os
+import signal
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
@@ -19,7 +20,7 @@ import xarray as xr
 from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
-from disorder_landscape.physics.transport import CONDUCTANCES
+from disorder_landscape.physics.labels import CONDUCTANCES
 
 VARIABLES = (*CONDUCTANCES, "components", "alpha", "potential")
 Progress = Callable[[int], None]
@@ -147,9 +148,10 @@ def generate(
 
 
 def _one_thread() -> None:
-    """Keep a worker to one thread."""
+    """Keep a worker to one thread, and leave Ctrl-C to the process that waits for it."""
     import numba
 
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     numba.set_num_threads(1)
     os.environ.update(OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Iterable, Mapping
 from importlib.metadata import version
 from pathlib import Path
@@ -34,18 +35,28 @@ def write_dataset(dataset: xr.Dataset, path: Path, attrs: Mapping[str, object]) 
             bad = int((~np.isfinite(variable.to_numpy())).sum())
             require(bad == 0, "dataset", "be finite", f"{name} has {bad} numbers that are not")
     with replacing(path) as temporary:
-        _create_without_times(temporary)
-        dataset.assign_attrs(attrs).to_netcdf(temporary, mode="a", engine="h5netcdf")
+        # In memory first: HDF5 itself crashes where the disk is full.
+        content = io.BytesIO(_empty_without_times())
+        dataset.assign_attrs(attrs).to_netcdf(content, mode="a", engine="h5netcdf")
+        temporary.write_bytes(content.getvalue())
 
 
-def _create_without_times(path: Path) -> None:
-    """Create an empty netCDF4 file without HDF5's times, so that equal content is equal bytes."""
+def _empty_without_times() -> bytes:
+    """Return an empty netCDF4 file without HDF5's times, so that equal content is equal bytes."""
     creation = h5py.h5p.create(h5py.h5p.FILE_CREATE)
     creation.set_obj_track_times(False)
     in_order = h5py.h5p.CRT_ORDER_TRACKED | h5py.h5p.CRT_ORDER_INDEXED
     creation.set_link_creation_order(in_order)
     creation.set_attr_creation_order(in_order)
-    h5py.h5f.create(str(path).encode(), h5py.h5f.ACC_TRUNC, fcpl=creation).close()
+    in_memory = h5py.h5p.create(h5py.h5p.FILE_ACCESS)
+    in_memory.set_fapl_core(backing_store=False)
+    file = h5py.h5f.create(b"empty.nc", h5py.h5f.ACC_TRUNC, fcpl=creation, fapl=in_memory)
+    try:
+        h5py.h5f.flush(file)
+        image: bytes = file.get_file_image()
+        return image
+    finally:
+        file.close()
 
 
 def read_dataset(path: str | Path, variables: Iterable[str] = ()) -> xr.Dataset:

@@ -10,6 +10,7 @@ import xarray as xr
 from disorder_landscape.learning.model import TrainedModel, check_grid, load_model
 from disorder_landscape.learning.scaling import conductance_array
 from disorder_landscape.physics.disorder import potential_from_components
+from disorder_landscape.physics.labels import labelled
 
 
 def predict(model: str | Path | TrainedModel, G: xr.Dataset) -> xr.Dataset:
@@ -44,30 +45,19 @@ def predict(model: str | Path | TrainedModel, G: xr.Dataset) -> xr.Dataset:
     components = Y[:, : dataset.components]
     fixed = np.full(len(Y), dataset.alpha_range[0])
     alpha = Y[:, dataset.components] if dataset.alpha_is_label else fixed
-    predicted = xr.Dataset(
-        {
-            "components": (
-                ("realization", "component"),
-                components,
-                {"units": "meV", "long_name": "predicted disorder components"},
-            ),
-            "potential": (
-                ("realization", "site"),
-                potential_from_components(components, dataset.sites),
-                {"units": "meV", "long_name": "predicted disorder potential"},
-            ),
-            "alpha": (
-                "realization",
-                alpha,
-                {"units": "meV nm", "long_name": "predicted spin-orbit coupling"},
-            ),
-        },
-        coords={
-            "component": np.arange(1, dataset.components + 1),
-            "site": np.arange(dataset.sites),
-        },
-        attrs={"config_hash": dataset.hash},
-    )
+    data = {
+        "components": (("realization", "component"), components),
+        "potential": (
+            ("realization", "site"),
+            potential_from_components(components, dataset.sites),
+        ),
+        "alpha": ("realization", alpha),
+    }
+    coords = {
+        "component": np.arange(1, dataset.components + 1),
+        "site": np.arange(dataset.sites),
+    }
+    predicted = labelled(xr.Dataset(data, coords=coords, attrs={"config_hash": dataset.hash}))
     if "realization" not in G.dims:
         return predicted.isel(realization=0)
     if "realization" in G.coords:

@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 from sklearn.preprocessing import StandardScaler
 
 from disorder_landscape.arguments import require
+from disorder_landscape.physics.labels import CONDUCTANCES
 from disorder_landscape.physics.parameters import FloatArray
 
 ConductanceArray = NDArray[np.float32]
 
-CHANNELS = ("G_LL", "G_RR", "G_LR", "G_RL")
+CHANNELS = CONDUCTANCES
 """The network's input channels, in this order: the "4 different measurements" of S-II.2."""
 AXES = ("mu", "B", "bias")
 """The measurement configurations K, in the order of the network's axes."""

@@ -1,36 +1,22 @@
-"""The conductance matrix and the topological visibility on grids, through either solver."""
+"""The conductance matrix on grids of μ, B and V_bias, at any temperature, through either solver."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from disorder_landscape.arguments import ArgumentError, grid_in, number_in, require
+from disorder_landscape.arguments import grid_in, number_in
+from disorder_landscape.physics.labels import CONDUCTANCES, labelled
 from disorder_landscape.physics.parameters import TEMPERATURE, FloatArray, Nanowire
+from disorder_landscape.physics.solvers import solver_functions, wires_of
 from disorder_landscape.physics.thermal import ENERGY_SPACING, thermal_grid
 
-CONDUCTANCES = ("G_LL", "G_RR", "G_LR", "G_RL")
-"""Order of the conductance matrix's elements wherever they share an axis."""
-LONG_NAMES = {
-    "mu": ("chemical potential", "meV"),
-    "B": ("magnetic field along the wire", "T"),
-    "bias": ("bias voltage", "meV"),
-    "G_LL": ("local conductance dI_L/dV_L", "e^2/h"),
-    "G_RR": ("local conductance dI_R/dV_R", "e^2/h"),
-    "G_LR": ("nonlocal conductance -dI_L/dV_R", "e^2/h"),
-    "G_RL": ("nonlocal conductance -dI_R/dV_L", "e^2/h"),
-    "T_IV": ("topological visibility det r at zero energy", "1"),
-}
-"""Long name and units of every variable and coordinate."""
 BLOCK_ENERGIES = {"fast": 2**18, "kwant": 2**8}
 """Energies that each solver is given at a time: about 16 MB and one second."""
 
-BareConductance = Callable[[Sequence[Nanowire], FloatArray, FloatArray, FloatArray], FloatArray]
-Determinant = Callable[[Sequence[Nanowire], FloatArray, FloatArray], FloatArray]
 Progress = Callable[[int, int], None]
 
 
@@ -72,7 +58,7 @@ def conductance(
         If a grid is empty, unsorted or out of range, the temperature negative, the bias or its
         thermal window beyond the gap, the solver unknown, or the wires of unequal length.
     """
-    wires = _as_wires(wire)
+    wires = wires_of(wire)
     delta0 = min(w.delta0 for w in wires)
     grids = {
         "mu": grid_in("mu", mu, -1e3, 1e3, "meV"),
@@ -85,7 +71,7 @@ def conductance(
         omega, weights = thermal_grid(grids["bias"], temperature, delta0, energy_spacing)
     else:
         omega, weights = _bare_grid(grids["bias"])
-    bare = _solver(solver)[0]
+    bare = solver_functions(solver)[0]
     G = np.empty((len(wires), grids["mu"].size, grids["B"].size, grids["bias"].size, 4))
     shape = (len(wires), grids["mu"].size, grids["B"].size)
     for some, points, fields in _blocks(shape, BLOCK_ENERGIES[solver] // omega.size):
@@ -94,70 +80,9 @@ def conductance(
         if progress is not None:
             progress(G0[..., 0, 0].size, np.prod(shape, dtype=int) * omega.size)
     data = {name: (("realization", *grids), G[..., i]) for i, name in enumerate(CONDUCTANCES)}
-    dataset = xr.Dataset(data, coords=grids, attrs={"temperature": temperature, "solver": solver})
-    return _finish(dataset, wire)
-
-
-def topological_visibility(
-    wire: Nanowire | Sequence[Nanowire],
-    mu: ArrayLike,
-    B: ArrayLike,
-    barrier: bool = True,
-    solver: str = "fast",
-) -> xr.DataArray:
-    """Return T_IV = det r at ω = 0 of both ends of a wire, or of several of equal length (S-I).
-
-    Parameters
-    ----------
-    wire : Nanowire or sequence of them
-    mu, B : float or array
-        Chemical potentials in meV and fields in T; increasing.
-    barrier : bool
-        Whether with the device's barriers, or without any.
-    solver : {"fast", "kwant"}
-
-    Returns
-    -------
-    xarray.DataArray
-        T_IV in [−1, 1], dims (lead, mu, B), lead = L, R, with a leading dim realization for several
-        wires; negative where the wire is topological.
-
-    Raises
-    ------
-    ArgumentError
-        As in `conductance`.
-    """
-    wires = _as_wires(wire)
-    grids = {"mu": grid_in("mu", mu, -1e3, 1e3, "meV"), "B": grid_in("B", B, -100.0, 100.0, "T")}
-    if not barrier:
-        wires = [replace(w, barrier=(0.0, 0.0)) for w in wires]
-    determinant = _solver(solver)[1](wires, grids["mu"], grids["B"])
-    coords = {"lead": ["L", "R"], **grids}
-    data = {"T_IV": (("realization", *coords), determinant)}
-    T: xr.DataArray = _finish(xr.Dataset(data, coords=coords), wire)["T_IV"]
-    return T
-
-
-def _as_wires(wire: Nanowire | Sequence[Nanowire]) -> list[Nanowire]:
-    wires = [wire] if isinstance(wire, Nanowire) else list(wire)
-    must = "be a Nanowire or a sequence of them of equal length"
-    ok = bool(wires) and all(isinstance(w, Nanowire) for w in wires)
-    require(ok, "wire", must, f"it is {type(wire).__name__!r} of {len(wires)}")
-    lengths = sorted({w.sites for w in wires})
-    require(len(lengths) == 1, "wire", must, f"they have {lengths} sites")
-    return wires
-
-
-def _solver(name: str) -> tuple[BareConductance, Determinant]:
-    if name == "fast":
-        from disorder_landscape.physics import fast_solver
-
-        return fast_solver.bare_conductance, fast_solver.reflection_determinant
-    if name == "kwant":
-        from disorder_landscape.physics import kwant_solver
-
-        return kwant_solver.bare_conductance, kwant_solver.reflection_determinant
-    raise ArgumentError("solver", "be 'fast' or 'kwant'", f"it is {name!r}")
+    attrs = {"temperature": temperature, "solver": solver}
+    dataset = labelled(xr.Dataset(data, coords=grids, attrs=attrs))
+    return dataset.isel(realization=0) if isinstance(wire, Nanowire) else dataset
 
 
 def _bare_grid(bias: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -182,11 +107,3 @@ def _blocks(shape: tuple[int, int, int], most: int) -> Iterator[tuple[slice, sli
                     slice(p, p + points_at_once),
                     slice(f, f + fields_at_once),
                 )
-
-
-def _finish(dataset: xr.Dataset, wire: Nanowire | Sequence[Nanowire]) -> xr.Dataset:
-    """Name units and drop the dim realization of a single wire."""
-    for name, (long_name, units) in LONG_NAMES.items():
-        if name in dataset.variables:
-            dataset[name].attrs.update(long_name=long_name, units=units)
-    return dataset.isel(realization=0) if isinstance(wire, Nanowire) else dataset

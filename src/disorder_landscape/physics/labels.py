@@ -1,0 +1,40 @@
+"""Names and units of everything that goes into a dataset, in one place."""
+
+from __future__ import annotations
+
+import xarray as xr
+
+CONDUCTANCES = ("G_LL", "G_RR", "G_LR", "G_RL")
+"""Order of the conductance matrix's elements wherever they share an axis."""
+LABELS = {
+    "mu": ("chemical potential", "meV"),
+    "B": ("magnetic field along the wire", "T"),
+    "bias": ("bias voltage", "meV"),
+    "lead": ("left or right lead", "1"),
+    "realization": ("index of the realization", "1"),
+    "component": ("number n of the cosine component", "1"),
+    "site": ("lattice site", "1"),
+    "G_LL": ("local conductance dI_L/dV_L", "e^2/h"),
+    "G_RR": ("local conductance dI_R/dV_R", "e^2/h"),
+    "G_LR": ("nonlocal conductance -dI_L/dV_R", "e^2/h"),
+    "G_RL": ("nonlocal conductance -dI_R/dV_L", "e^2/h"),
+    "T_IV": ("topological visibility det r at zero energy", "1"),
+    "components": ("disorder components c_1 ... c_n", "meV"),
+    "alpha": ("spin-orbit coupling", "meV nm"),
+    "potential": ("disorder potential without barriers", "meV"),
+}
+"""Long name and units of each variable and coordinate."""
+
+
+def labelled(dataset: xr.Dataset) -> xr.Dataset:
+    """Return the dataset with long_name and units on all variables that have them.
+
+    What a name with the ending _predicted stands for is the network's guess of it.
+    """
+    for name in dataset.variables:
+        base = str(name).removesuffix("_predicted")
+        if base in LABELS:
+            long_name, units = LABELS[base]
+            guess = "" if base == name else "predicted "
+            dataset[name].attrs.update(long_name=guess + long_name, units=units)
+    return dataset

@@ -1,0 +1,38 @@
+"""The two solvers behind one signature, and the wires they take."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from disorder_landscape.arguments import ArgumentError, require
+from disorder_landscape.physics.parameters import FloatArray, Nanowire
+
+BareConductance = Callable[[Sequence[Nanowire], FloatArray, FloatArray, FloatArray], FloatArray]
+Determinant = Callable[[Sequence[Nanowire], FloatArray, FloatArray], FloatArray]
+
+
+def solver_functions(name: str) -> tuple[BareConductance, Determinant]:
+    """Return `bare_conductance` and `reflection_determinant` of "fast" or "kwant".
+
+    Each is imported only when it is asked for: Kwant's import takes a second, Numba's two.
+    """
+    if name == "fast":
+        from disorder_landscape.physics import fast_solver
+
+        return fast_solver.bare_conductance, fast_solver.reflection_determinant
+    if name == "kwant":
+        from disorder_landscape.physics import kwant_solver
+
+        return kwant_solver.bare_conductance, kwant_solver.reflection_determinant
+    raise ArgumentError("solver", "be 'fast' or 'kwant'", f"it is {name!r}")
+
+
+def wires_of(wire: Nanowire | Sequence[Nanowire]) -> list[Nanowire]:
+    """Return a list of wires of equal length, of one wire or of several."""
+    wires = [wire] if isinstance(wire, Nanowire) else list(wire)
+    must = "be a Nanowire or a sequence of them of equal length"
+    ok = bool(wires) and all(isinstance(w, Nanowire) for w in wires)
+    require(ok, "wire", must, f"it is {type(wire).__name__!r} of {len(wires)}")
+    lengths = sorted({w.sites for w in wires})
+    require(len(lengths) == 1, "wire", must, f"they have {lengths} sites")
+    return wires

@@ -1,0 +1,63 @@
+"""Where a wire is topological: the visibility T_IV of its ends, and the bulk transition."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from disorder_landscape.arguments import grid_in
+from disorder_landscape.physics.labels import labelled
+from disorder_landscape.physics.parameters import FloatArray, Nanowire
+from disorder_landscape.physics.solvers import solver_functions, wires_of
+
+
+def topological_visibility(
+    wire: Nanowire | Sequence[Nanowire],
+    mu: ArrayLike,
+    B: ArrayLike,
+    barrier: bool = True,
+    solver: str = "fast",
+) -> xr.DataArray:
+    """Return T_IV = det r at ω = 0 of both ends of a wire, or of several of equal length (S-I).
+
+    Parameters
+    ----------
+    wire : Nanowire or sequence of them
+    mu, B : float or array
+        Chemical potentials in meV and fields in T; increasing.
+    barrier : bool
+        Whether with the device's barriers, or without any.
+    solver : {"fast", "kwant"}
+
+    Returns
+    -------
+    xarray.DataArray
+        T_IV in [−1, 1], dims (lead, mu, B), lead = L, R, with a leading dim realization for several
+        wires; negative where the wire is topological.
+
+    Raises
+    ------
+    ArgumentError
+        As in `conductance`.
+    """
+    wires = wires_of(wire)
+    grids = {"mu": grid_in("mu", mu, -1e3, 1e3, "meV"), "B": grid_in("B", B, -100.0, 100.0, "T")}
+    if not barrier:
+        wires = [replace(w, barrier=(0.0, 0.0)) for w in wires]
+    determinant = solver_functions(solver)[1](wires, grids["mu"], grids["B"])
+    coords = {"lead": ["L", "R"], **grids}
+    data = {"T_IV": (("realization", *coords), determinant)}
+    T: xr.DataArray = labelled(xr.Dataset(data, coords=coords))["T_IV"]
+    return T.isel(realization=0) if isinstance(wire, Nanowire) else T
+
+
+def transition_field(wire: Nanowire, mu: ArrayLike) -> FloatArray:
+    """Return the field in T at which a pristine infinite wire closes its gap, shape as mu (meV).
+
+    V_Z² = μ² + γ² (Lutchyn, Sau and Das Sarma 2010, with the pairing γ that Σ(0) induces).
+    """
+    return np.asarray(np.hypot(mu, wire.gamma) / wire.zeeman_per_tesla)
