@@ -76,14 +76,8 @@ def _solve_lanes(
     growth_limit: float,
     re: FloatArray,
     im: FloatArray,
-) -> int:  # pragma: no cover
-    """Write −G of the end sites of wire w at field f for the pairs (μ, ω) from `first` on.
-
-    Returns
-    -------
-    int
-        How many of the lanes were solved by `pivoted`.
-    """
+) -> None:  # pragma: no cover
+    """Write −G of the end sites of wire w at field f for the pairs (μ, ω) from `first` on."""
     s = np.empty(STATE * LANES)
     energy, mu = np.empty(LANES, dtype=np.int64), np.empty(LANES, dtype=np.int64)
     energies = p.normal.shape[1]
@@ -97,14 +91,11 @@ def _solve_lanes(
     V, zeeman_x, zeeman_z, sigma = p.V[w], p.zeeman_x[w, f], p.zeeman_z[w, f], p.sigma[w, f]
     eliminate_inner_sites(s, V, zeeman_x, zeeman_z)
     end_green_functions(s, sigma, energy, re, im)
-    pivoted = 0
     for l in range(min(LANES, pairs - first)):
         if not s[GROWTH * LANES + l] < growth_limit:  # so that NaN pivots too
-            pivoted += 1
             e = energy[l]
             terms = p.kinetic[w, mu[l]], p.normal[w, e], p.anomalous[w, e]
             pivoted_end_green_functions(V, zeeman_x, zeeman_z, terms, sigma[e], l, re, im)
-    return pivoted
 
 
 @nb.njit(cache=True, parallel=True)
@@ -112,19 +103,17 @@ def _conductance_kernel(
     p: _Problem,
     growth_limit: float,
     out: FloatArray,
-) -> int:  # pragma: no cover
-    """Fill out, shape (wire, B, mu·omega, 2, 4); return how many lanes needed pivoting."""
+) -> None:  # pragma: no cover
+    """Fill out, shape (wire, B, mu·omega, 2, 4)."""
     wires, fields, pairs = out.shape[:3]
     pieces = (pairs + LANES - 1) // LANES
-    pivoted = 0
     for task in nb.prange(wires * fields * pieces):
         w, f, first = task // pieces // fields, task // pieces % fields, task % pieces * LANES
         re, im = np.empty(64 * LANES), np.empty(64 * LANES)
-        pivoted += _solve_lanes(p, w, f, first, growth_limit, re, im)
+        _solve_lanes(p, w, f, first, growth_limit, re, im)
         for l in range(min(LANES, pairs - first)):
             at = p.sigma[w, f, (first + l) % p.normal.shape[1]]
             lane_conductances(re, im, at, l, out[w, f, first + l])
-    return pivoted
 
 
 @nb.njit(cache=True, parallel=True)
@@ -132,22 +121,20 @@ def _end_block_kernel(
     p: _Problem,
     growth_limit: float,
     out: ComplexArray,
-) -> int:  # pragma: no cover
+) -> None:  # pragma: no cover
     """Fill out, shape (wire, B, mu·omega, lead, 4, 4), with G_LL and G_RR in units of 1/t'."""
     wires, fields, pairs = out.shape[:3]
     pieces = (pairs + LANES - 1) // LANES
-    pivoted = 0
     for task in nb.prange(wires * fields * pieces):
         w, f, first = task // pieces // fields, task // pieces % fields, task % pieces * LANES
         re, im = np.empty(64 * LANES), np.empty(64 * LANES)
-        pivoted += _solve_lanes(p, w, f, first, growth_limit, re, im)
+        _solve_lanes(p, w, f, first, growth_limit, re, im)
         for l in range(min(LANES, pairs - first)):
             for lead in range(2):
                 for i in range(4):
                     for j in range(4):
                         at = (8 * min(i, j) + max(i, j) + 36 * lead) * LANES + l
                         out[w, f, first + l, lead, i, j] = -complex(re[at], im[at])
-    return pivoted
 
 
 def bare_conductance(
