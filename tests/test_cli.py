@@ -85,7 +85,9 @@ def test_simulate_draws_the_same_potential_for_the_same_seed(monkeypatch, capsys
         (["--potential", "foreign.nc"], "lacks potential"),
         (["--potential", "short.csv", "--seed", "1"], "both are given"),
         (["--plot", "picture.xyz"], "Argument plot must end in one of"),
-        (["--output", "words.csv/x.nc"], "Argument folder must be a place to write to"),
+        (["--plot", "x.png", "--output", "x.png"], "be another file than the output"),
+        (["--output", "words.csv/x.nc"], "Argument output must be a file in a folder that can be"),
+        (["--output", "."], "Argument output must be a file in a folder that can be written"),
     ],
 )
 def test_bad_input_is_one_sentence(monkeypatch, capsys, tmp_path, options, says):
@@ -140,7 +142,7 @@ def test_training_without_a_dataset_says_what_to_run(monkeypatch, capsys, tmp_pa
 
 def test_a_folder_that_cannot_be_made_is_one_sentence(monkeypatch, capsys, tmp_path):
     (tmp_path / "file").write_text("")
-    config = ["--config", "configs/smoke.toml", "--build", tmp_path / "file", "--workers", 1]
+    config = ["--config", "configs/smoke.toml", "--build", tmp_path / "file", "--workers", 2]
     code, _, err = landscape(monkeypatch, capsys, "generate", *config)
     assert code == 2
     assert "landscape: Argument folder must be a place to write to" in err

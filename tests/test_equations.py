@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
-from disorder_landscape import Nanowire, conductance, topological_visibility
+from disorder_landscape import ArgumentError, Nanowire, conductance, topological_visibility
 from disorder_landscape.config import load_config
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.physics import disorder, hamiltonian, kwant_solver
@@ -96,6 +96,20 @@ def test_thermal_convolution():
         )[0]
         assert value == pytest.approx(integral, abs=2e-5)
     assert_allclose(weights.sum(axis=(1, 2)), 1.0)
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"wire": None}, {"energy_spacing": 0.5}, {"mu": 10**400}, {"B": None}, {"solver": ""}]
+)
+def test_wrong_arguments_are_one_sentence(wrong):
+    arguments = {"wire": Nanowire(np.zeros(10)), "mu": 0.0, "B": 0.3, **wrong}
+    with pytest.raises(ArgumentError, match=r"^Argument .* must .*, but .*\.$"):
+        conductance(**arguments)
+
+
+def test_a_lead_without_a_chemical_potential_is_refused():
+    with pytest.raises(ArgumentError, match="lead_mu"):
+        Nanowire(np.zeros(10), lead_mu=None)
 
 
 def test_topological_visibility_is_the_determinant_of_the_reflection_matrix():

@@ -11,6 +11,11 @@ class ArgumentError(ValueError):
 
     def __init__(self, name: str, must: str, but: str) -> None:
         super().__init__(f"Argument {name} must {must}, but {but}.")
+        self.parts = name, must, but
+
+    def __reduce__(self) -> tuple[type[ArgumentError], tuple[str, str, str]]:
+        """Let it come back from a worker process."""
+        return ArgumentError, self.parts
 
 
 def require(condition: bool, name: str, must: str, but: str) -> None:
@@ -30,7 +35,7 @@ def number_in(name: str, value: object, low: float, high: float, unit: str = "")
     must = f"be a number from {low:g} to {high:g} {unit}".rstrip()
     try:
         number = float(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise ArgumentError(name, must, f"it is {value!r}") from None
     require(low <= number <= high, name, must, f"it is {number:g}")
     return number
@@ -49,7 +54,7 @@ def grid_in(
     must = f"be a number or an increasing list of numbers in {unit}"
     try:
         grid = np.atleast_1d(np.asarray(values, dtype=np.float64))
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise ArgumentError(name, must, "it holds something else") from None
     require(grid.ndim == 1, name, must, f"it has shape {grid.shape}")
     require(grid.size > 0, name, must, "it is empty")

@@ -82,11 +82,15 @@ def simulate(
 
     from disorder_landscape import simulation
     from disorder_landscape.dataset.store import provenance, write_dataset
+    from disorder_landscape.files import check_writable
     from disorder_landscape.physics.disorder import disorder_realization
     from disorder_landscape.physics.parameters import Nanowire
 
+    check_writable("output", output)
     if plot is not None:
         simulation.check_plot(plot)
+        check_writable("plot", plot)
+        require(plot != output, "plot", "be another file than the output", f"both are '{plot}'")
     both = "one of --potential and --seed at most"
     require(potential is None or seed is None, "potential", f"come with {both}", "both are given")
     require(sites >= 2, "sites", "be 2 or more", f"it is {sites}")
@@ -189,12 +193,19 @@ def predict(
 ) -> None:
     """Let a trained network guess disorder and alpha from conductances on its grid.
 
+    The shipped model's grid is that of: landscape simulate --mu 0:0.6:15 --B 0:0.8:15
+    --bias -0.04,-0.02,0,0.02,0.04 -o wire.nc
+
     Example: landscape predict wire.nc --model data_small/models/five_components_and_alpha -o Y.nc
     """
     from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
+    from disorder_landscape.files import check_writable
     from disorder_landscape.learning.prediction import predict as predict_labels
     from disorder_landscape.physics.labels import CONDUCTANCES
 
+    check_writable("output", output)
+    same = output.resolve() == measurement.resolve()
+    require(not same, "output", "be another file than the measurement", f"both are '{output}'")
     Y = predict_labels(model, read_dataset(measurement, CONDUCTANCES)[list(CONDUCTANCES)])
     write_dataset(Y, output, provenance(" ".join(["landscape", *sys.argv[1:]])))
     print(f"wrote {output}")

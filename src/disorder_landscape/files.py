@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from disorder_landscape.arguments import ArgumentError
+from disorder_landscape.arguments import ArgumentError, require
 
 
 @contextmanager
@@ -36,6 +37,17 @@ def replacing(path: Path) -> Iterator[Path]:
     finally:
         with suppress(OSError):
             _remove(temporary)
+
+
+def check_writable(name: str, path: Path) -> None:
+    """Raise an ArgumentError where a file could not be written; nothing is touched.
+
+    For results that take long: `replacing` would notice, but only at the end.
+    """
+    folder = next(parent for parent in path.absolute().parents if parent.exists())
+    usable = folder.is_dir() and os.access(folder, os.W_OK) and not path.is_dir()
+    must = "be a file in a folder that can be written"
+    require(usable, name, must, f"it is '{path}'")
 
 
 def _remove(path: Path) -> None:

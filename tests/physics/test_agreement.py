@@ -144,7 +144,7 @@ def test_lanes_and_threads_leave_no_trace():
 def test_finite_temperature_is_the_same_average_for_both_solvers():
     wire = random_wire(8, sites=40)
     grids = {"mu": [0.1], "B": [0.3, 0.6], "bias": [-0.02, 0.0, 0.03]}
-    fast = conductance(wire, **grids, energy_spacing=0.02)
-    kwant = conductance(wire, **grids, energy_spacing=0.02, solver="kwant")
+    fast = conductance(wire, **grids, energy_spacing=4e-3)
+    kwant = conductance(wire, **grids, energy_spacing=4e-3, solver="kwant")
     for name in fast.data_vars:
         assert_allclose(fast[name], kwant[name], atol=1e-10)

@@ -68,9 +68,9 @@ def test_the_hamiltonian_has_particle_hole_symmetry_and_is_real_and_hermitian():
 @given(seeds, mus, fields)
 def test_the_mirror_image_of_a_wire_swaps_left_and_right(seed, mu, B):
     wire = random_wire(seed, sites=80)
-    G = conductance(wire, mu, B, BIAS, energy_spacing=5e-3)
+    G = conductance(wire, mu, B, BIAS, energy_spacing=4e-3)
     mirrored = conductance(
-        Nanowire(wire.potential[::-1], alpha=wire.alpha), mu, B, BIAS, energy_spacing=5e-3
+        Nanowire(wire.potential[::-1], alpha=wire.alpha), mu, B, BIAS, energy_spacing=4e-3
     )
     for name, other in [("G_LL", "G_RR"), ("G_LR", "G_RL")]:
         assert_allclose(G[name], mirrored[other], atol=1e-7)

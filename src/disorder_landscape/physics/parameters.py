@@ -85,7 +85,7 @@ class Nanowire:
         checked: dict[str, object] = {"potential": checked_potential(self.potential)}
         for name, (low, high, unit) in PARAMETER_RANGES.items():
             value = getattr(self, name)
-            if not (value is None and name.startswith("lead_")):
+            if not (value is None and name in ("lead_alpha", "lead_g")):
                 checked[name] = number_in(name, value, low, high, unit)
         must = "be two numbers in meV, left and right"
         require(np.shape(self.barrier) == (2,), "barrier", must, f"it is {self.barrier!r}")
@@ -158,7 +158,7 @@ def checked_potential(potential: ArrayLike, sites: int | None = None) -> FloatAr
     must = "be a vector of one number in meV per site, at least two"
     try:
         V = np.array(potential, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise ArgumentError("potential", must, "it holds something else") from None
     require(V.ndim == 1 and V.size >= 2, "potential", must, f"it has shape {V.shape}")
     require(sites in (None, V.size), "potential", f"have {sites} sites", f"it has {V.size}")

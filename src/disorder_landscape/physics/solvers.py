@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.physics.parameters import FloatArray, Nanowire
@@ -29,8 +29,9 @@ def solver_functions(name: str) -> tuple[BareConductance, Determinant]:
 
 def wires_of(wire: Nanowire | Sequence[Nanowire]) -> list[Nanowire]:
     """Return a list of wires of equal length, of one wire or of several."""
-    wires = [wire] if isinstance(wire, Nanowire) else list(wire)
     must = "be a Nanowire or a sequence of them of equal length"
+    require(isinstance(wire, Nanowire | Iterable), "wire", must, f"it is {wire!r}")
+    wires = [wire] if isinstance(wire, Nanowire) else list(wire)
     ok = bool(wires) and all(isinstance(w, Nanowire) for w in wires)
     require(ok, "wire", must, f"it is {type(wire).__name__!r} of {len(wires)}")
     lengths = sorted({w.sites for w in wires})

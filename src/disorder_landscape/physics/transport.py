@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from disorder_landscape.arguments import grid_in, number_in
 from disorder_landscape.physics.labels import CONDUCTANCES, labelled
-from disorder_landscape.physics.parameters import TEMPERATURE, FloatArray, Nanowire
+from disorder_landscape.physics.parameters import BOLTZMANN, TEMPERATURE, FloatArray, Nanowire
 from disorder_landscape.physics.solvers import solver_functions, wires_of
 from disorder_landscape.physics.thermal import ENERGY_SPACING, thermal_grid
 
@@ -42,7 +42,7 @@ def conductance(
     solver : {"fast", "kwant"}
         The real recursion, or Kwant, the reference, thousands of times slower.
     energy_spacing : float
-        Largest spacing in meV of the energies that a finite temperature averages over.
+        Largest spacing in meV, at most kT, of the energies that a finite temperature averages over.
     progress : callable, optional
         Told how many energies have just been solved, and how many there are in all.
 
@@ -66,8 +66,9 @@ def conductance(
         "bias": grid_in("bias", bias, -delta0 * (1 - 1e-6), delta0 * (1 - 1e-6), "meV"),
     }
     temperature = number_in("temperature", temperature, 0.0, 10.0, "K")
-    energy_spacing = number_in("energy_spacing", energy_spacing, 1e-7, 1.0, "meV")
     if temperature > 0:
+        kT = BOLTZMANN * temperature  # a coarser grid would miss the kernel altogether
+        energy_spacing = number_in("energy_spacing", energy_spacing, 1e-7, kT, "meV")
         omega, weights = thermal_grid(grids["bias"], temperature, delta0, energy_spacing)
     else:
         omega, weights = _bare_grid(grids["bias"])
