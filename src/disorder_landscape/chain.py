@@ -45,6 +45,11 @@ class Run:
         return SHIPPED_MODEL if self.name == SHIPPED else self.folder / "model"
 
     @property
+    def is_trained(self) -> bool:
+        """Whether the folder of the network holds a finished training."""
+        return (self.model_folder / "metrics.json").exists()
+
+    @property
     def evaluation_file(self) -> Path:
         """Test realizations and predictions."""
         return self.folder / "evaluation.nc"
@@ -92,7 +97,7 @@ def generate(run: Run, workers: int) -> None:
 
 def train(run: Run) -> None:
     """Train the run's network, or go on with it; generate must have been called."""
-    if _is_trained(run):  # before the dataset is read and TensorFlow imported
+    if _holds_this_training(run):  # before the dataset is read and TensorFlow imported
         print(f"'{run.model_folder}' holds this very training, finished: nothing to do.")
         return
     from disorder_landscape.learning.training import train as train_network
@@ -146,7 +151,7 @@ def evaluate(run: Run) -> xr.Dataset:
 def evaluation(preset: str, build: str | Path = "build", workers: int = 2) -> xr.Dataset:
     """Return what `evaluate` gives for a preset, after whatever is missing of its chain."""
     run = preset_run(preset, build)
-    if run.name != SHIPPED and not (run.model_folder / "metrics.json").exists():
+    if run.name != SHIPPED and not run.is_trained:
         generate(run, workers)
         train(run)
     if run.evaluation_file.exists():
@@ -166,10 +171,10 @@ def read_test_set(run: Run) -> xr.Dataset:
     return shards.read_shards(run.config.dataset, run.dataset_folder, test.start)
 
 
-def _is_trained(run: Run) -> bool:
+def _holds_this_training(run: Run) -> bool:
     from disorder_landscape.learning.model import load_model_config
 
-    if not (run.model_folder / "metrics.json").exists():
+    if not run.is_trained:
         return False
     there = load_model_config(run.model_folder)
     ours = run.config

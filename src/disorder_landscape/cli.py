@@ -147,9 +147,8 @@ def status(config: ConfigFile, build: Build = Path("build")) -> None:
         f"dataset     {now.realizations} of {now.realizations_in_all} realizations in "
         f"{now.shards} of {now.shards_in_all} shards, {now.bytes / 1e6:.1f} MB"
     )
-    trained = (run.model_folder / "metrics.json").exists()
     begun = run.model_folder.exists()
-    print(f"model       {'trained' if trained else 'begun' if begun else 'not begun'}")
+    print(f"model       {'trained' if run.is_trained else 'begun' if begun else 'not begun'}")
     print(f"evaluation  {'there' if run.evaluation_file.exists() else 'not there'}")
 
 
