@@ -1,0 +1,254 @@
+"""Levels of the isolated wire from its end Green's function at a few energies.
+
+Particle–hole symmetry: all matrices are real, so C = τyσy anticommutes with H. In the basis of
+`to_chiral`, C = ±1, the ends see a level ±E through a (C = 1) and b (C = −1), and
+
+    G₊₊ = Σ a aᵀ ω/(ω² − E²),   G₊₋ = Σ a bᵀ E/(ω² − E²),   G₋₋ = Σ b bᵀ ω/(ω² − E²).
+
+So Φ(x) = [[G₊₊/ω, G₊₋], [G₋₊, ωG₋₋]], with x = ω², is Σ w wᵀ/(x − E²) + diag(0, 1), w = (a, Eb),
+where the sum runs over all levels of wire and parent superconductor together: with it the
+Hamiltonian does not depend on the energy, and Φ is the resolvent of a symmetric operator A ≥ 0,
+Φ − diag(0, 1) = Pᵀ(x − A)⁻¹P.
+
+Rayleigh–Ritz: the vectors (x_k − A)⁻¹P at M energies span a space in which A is diagonalised. Their
+products need no vectors, only Φ and its slope (a Loewner matrix, Mayo and Antoulas 2007):
+
+    ⟨j|k⟩ = −(Φ_j − Φ_k)/(x_j − x_k),   ⟨j|A|k⟩ = −(x_jΦ_j − x_kΦ_k)/(x_j − x_k),
+
+with derivatives for j = k. So the levels are real and the residues positive by construction, and
+the model meets Φ and dΦ/dx at every node. 8M directions from M energies: where a common-denominator
+fit (AAA) needs 48 to 64 energies, 8 to 12 do here.
+"""
+
+from __future__ import annotations
+
+import numba as nb
+import numpy as np
+
+from disorder_landscape.physics.eigen import (
+    pivoted_cholesky,
+    reduce_pencil,
+    tridiagonal_levels,
+    tridiagonalise,
+)
+from disorder_landscape.physics.hamiltonian import ComplexArray
+from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.physics.recursion import C_AT, D_AT, E_AT, LANES, SLOPES
+
+DROP = 1e-12
+"""Basis vectors of which less than this (squared, relative) is new are left out."""
+ZERO_MODE = 3e-5
+"""Below this energy in meV Eb is too small to tell b; completeness does."""
+
+
+@nb.njit(cache=True)
+def to_chiral(M: FloatArray | ComplexArray) -> None:  # pragma: no cover
+    """Turn an 8×8 matrix of the two ends from (L, R) × (u↑, u↓, −v↓, v↑) to C = + + − −, in place.
+
+    Columns 0–3 are (u↓ − v↓)/√2 and (u↑ − v↑)/√2 of L, then of R; columns 4–7 (u↓ + v↓)/√2 and
+    (u↑ + v↑)/√2.
+    """
+    half = np.sqrt(0.5)
+    row = np.empty(8, dtype=M.dtype)
+    for _ in range(2):  # MᵀT twice is TᵀMT
+        for i in range(8):
+            for end in range(2):
+                m0, m1, m2, m3 = M[i, 4 * end], M[i, 4 * end + 1], M[i, 4 * end + 2], M[i, 4 * end + 3]
+                row[2 * end], row[2 * end + 1] = half * (m1 + m2), half * (m0 - m3)
+                row[4 + 2 * end], row[5 + 2 * end] = half * (m1 - m2), half * (m0 + m3)
+            for j in range(8):
+                M[i, j] = row[j]
+        for i in range(8):
+            for j in range(i):
+                M[i, j], M[j, i] = M[j, i], M[i, j]
+
+
+@nb.njit(cache=True, error_model="numpy")
+def isolated_end_green_function(
+    s: FloatArray, lane: int, hop: float, G: FloatArray, slope: FloatArray
+) -> None:  # pragma: no cover
+    """Write one lane's G and dG/dω of the isolated wire's ends, chiral basis, 1/meV and 1/meV².
+
+    s is the state that `eliminate_inner_sites_with_slopes` leaves, hop is t' in meV.
+    """
+    L = LANES
+    dM = np.empty((8, 8))
+    for first, out in ((0, G), (SLOPES, dM)):
+        upper = 0
+        for i in range(4):
+            for j in range(i, 4):
+                e, d = s[(first + E_AT + upper) * L + lane], s[(first + D_AT + upper) * L + lane]
+                out[i, j], out[j, i], out[4 + i, 4 + j], out[4 + j, 4 + i] = e, e, d, d
+                upper += 1
+            for j in range(4):
+                c = s[(first + C_AT + 4 * i + j) * L + lane]
+                out[i, 4 + j], out[4 + j, i] = c, c
+    invert(G)
+    product = np.empty((8, 8))
+    for i in range(8):
+        for j in range(8):
+            total = 0.0
+            for k in range(8):
+                total += G[i, k] * dM[k, j]
+            product[i, j] = total
+    for i in range(8):
+        for j in range(8):
+            total = 0.0
+            for k in range(8):
+                total += product[i, k] * G[k, j]
+            slope[i, j] = -total / hop
+    for i in range(8):
+        for j in range(8):
+            G[i, j] /= hop
+    to_chiral(G)
+    to_chiral(slope)
+
+
+@nb.njit(cache=True, error_model="numpy")
+def invert(M: FloatArray | ComplexArray) -> None:  # pragma: no cover
+    """Invert a small matrix in place by Gauss–Jordan elimination with row pivoting."""
+    n = M.shape[0]
+    order = np.empty(n, dtype=np.int64)
+    for k in range(n):
+        pivot = k
+        for i in range(k + 1, n):
+            if abs(M[i, k]) > abs(M[pivot, k]):
+                pivot = i
+        order[k] = pivot
+        for j in range(n):
+            M[k, j], M[pivot, j] = M[pivot, j], M[k, j]
+        scale = 1.0 / M[k, k]
+        M[k, k] = 1.0
+        for j in range(n):
+            M[k, j] *= scale
+        for i in range(n):
+            if i != k:
+                factor = M[i, k]
+                M[i, k] = 0.0
+                for j in range(n):
+                    M[i, j] -= factor * M[k, j]
+    for k in range(n - 1, -1, -1):
+        if order[k] != k:
+            for i in range(n):
+                M[i, k], M[i, order[k]] = M[i, order[k]], M[i, k]
+
+
+@nb.njit(cache=True, error_model="numpy")
+def _loewner_pencil(
+    omega: FloatArray,
+    G: FloatArray,
+    slope: FloatArray,
+    N: FloatArray,
+    K: FloatArray,
+    b: FloatArray,
+) -> None:  # pragma: no cover
+    """Write the products ⟨j|k⟩, ⟨j|A|k⟩ and the rows P of the normalised basis."""
+    nodes = omega.size
+    phi, dphi = np.empty((nodes, 8, 8)), np.empty((nodes, 8, 8))
+    for k in range(nodes):
+        w = omega[k]
+        for i in range(8):
+            for j in range(8):
+                if i < 4 and j < 4:
+                    p, d = G[k, i, j] / w, (slope[k, i, j] - G[k, i, j] / w) / w
+                elif i >= 4 and j >= 4:
+                    p, d = G[k, i, j] * w, slope[k, i, j] * w + G[k, i, j]
+                    if i == j:
+                        p -= 1.0
+                else:
+                    p, d = G[k, i, j], slope[k, i, j]
+                phi[k, i, j], dphi[k, i, j] = p, d / (2 * w)
+    scale = np.empty(8 * nodes)
+    for k in range(nodes):
+        for i in range(8):
+            scale[8 * k + i] = 1.0 / np.sqrt(-dphi[k, i, i])
+            for c in range(8):
+                b[8 * k + i, c] = scale[8 * k + i] * phi[k, i, c]
+    for k in range(nodes):
+        xk = omega[k] ** 2
+        for m in range(k, nodes):
+            xm = omega[m] ** 2
+            for i in range(8):
+                for j in range(8):
+                    if k == m:
+                        norm = -dphi[k, i, j]
+                        energy = -phi[k, i, j] + xk * norm
+                    else:
+                        norm = -(phi[k, i, j] - phi[m, i, j]) / (xk - xm)
+                        energy = -phi[m, i, j] + xk * norm
+                    factor = scale[8 * k + i] * scale[8 * m + j]
+                    N[8 * k + i, 8 * m + j] = norm * factor
+                    N[8 * m + j, 8 * k + i] = norm * factor
+                    K[8 * k + i, 8 * m + j] = energy * factor
+                    K[8 * m + j, 8 * k + i] = energy * factor
+
+
+@nb.njit(cache=True, error_model="numpy")
+def wire_levels(
+    omega: FloatArray, G: FloatArray, slope: FloatArray, E: FloatArray, weight: FloatArray
+) -> int:  # pragma: no cover
+    """Find the levels from G and dG/dω at the nodes.
+
+    Parameters
+    ----------
+    omega : array, shape (node,)
+        Positive, in meV.
+    G, slope : array, shape (node, 8, 8)
+        From `isolated_end_green_function`.
+    E : array, shape (8 · node,)
+        Written: the levels in meV, unsorted.
+    weight : array, shape (8 · node, 8)
+        Written: a and b of every level.
+
+    Returns
+    -------
+    int
+        How many levels there are; 0 if the data make no model.
+    """
+    n = 8 * omega.size
+    N, K, b = np.empty((n, n)), np.empty((n, n)), np.empty((n, 8))
+    R, A, off = np.empty((n, n)), np.empty((n, n)), np.empty(n)
+    order = np.empty(n, dtype=np.int64)
+    _loewner_pencil(omega, G, slope, N, K, b)
+    rank = pivoted_cholesky(N, DROP, R, order)
+    if rank == 0:
+        return 0
+    reduce_pencil(K, b, R, order, rank, A, weight)
+    tridiagonalise(A, rank, weight, E, off)
+    if not tridiagonal_levels(E, off, rank, weight):
+        return 0
+    small = 0
+    for j in range(rank):
+        E[j] = np.sqrt(max(E[j], 0.0))
+        if E[j] < ZERO_MODE:
+            small += 1
+        else:
+            for c in range(4, 8):
+                weight[j, c] /= E[j]
+    if small > 0:
+        _complete_zero_modes(omega[0], G[0], E[:rank], weight)
+    return rank
+
+
+@nb.njit(cache=True, error_model="numpy")
+def _complete_zero_modes(
+    omega: float, G: FloatArray, E: FloatArray, weight: FloatArray
+) -> None:  # pragma: no cover
+    """Give the levels at zero the b that the others leave of ωG₋₋ = Σ b bᵀ ω²/(ω² − E²)."""
+    x = omega**2
+    rest = omega * G[4:, 4:]
+    for j in range(E.size):
+        if E[j] >= ZERO_MODE:
+            factor = x / (x - E[j] ** 2)
+            for i in range(4):
+                for k in range(4):
+                    rest[i, k] -= factor * weight[j, 4 + i] * weight[j, 4 + k]
+    for j in range(E.size):
+        if E[j] < ZERO_MODE:
+            p = np.argmax(np.diag(rest))
+            root = np.sqrt(max(rest[p, p], 0.0))
+            for i in range(4):
+                weight[j, 4 + i] = rest[i, p] / root if root > 0 else 0.0
+            for i in range(4):
+                for k in range(4):
+                    rest[i, k] -= weight[j, 4 + i] * weight[j, 4 + k]
