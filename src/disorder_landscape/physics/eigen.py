@@ -21,6 +21,13 @@ SUMS = {"reassoc", "contract", "nsz", "arcp"}
 
 
 @nb.njit(cache=True, fastmath=SUMS, error_model="numpy")
+def _subtract(row: FloatArray, factor: float, other: FloatArray) -> None:  # pragma: no cover
+    """Subtract factor times the other row."""
+    for j in range(row.size):
+        row[j] -= factor * other[j]
+
+
+@nb.njit(cache=True, fastmath=SUMS, error_model="numpy")
 def pivoted_cholesky(
     N: FloatArray, drop: float, R: FloatArray, order: NDArray[np.int64]
 ) -> int:  # pragma: no cover
@@ -41,16 +48,16 @@ def pivoted_cholesky(
         if not pivots[best] > drop:
             return k
         order[k] = best
-        for j in range(n):
-            R[k, j] = N[best, j]
+        row = R[k]
+        row[:] = N[best]
         for i in range(k):
             factor = R[i, best]
             for j in range(n):
-                R[k, j] -= factor * R[i, j]
-        root = 1.0 / np.sqrt(R[k, best])
+                row[j] -= factor * R[i, j]
+        root = 1.0 / np.sqrt(row[best])
         for j in range(n):
-            R[k, j] *= root
-            pivots[j] -= R[k, j] ** 2
+            row[j] *= root
+            pivots[j] -= row[j] ** 2
         pivots[best] = -1.0
     return n
 
@@ -99,54 +106,71 @@ def reduce_pencil(
 
 
 @nb.njit(cache=True, fastmath=SUMS, error_model="numpy")
+def _update_and_multiply(
+    A: FloatArray,
+    first: int,
+    n: int,
+    v: FloatArray,
+    p: FloatArray,
+    new: FloatArray,
+    product: FloatArray,
+) -> None:  # pragma: no cover
+    """Subtract v pᵀ + p vᵀ from A[first:, first:] and multiply it by `new`, in one pass over A."""
+    for j in range(first, n):
+        product[j] = 0.0
+    for i in range(first, n):
+        vi, pi, ni = v[i], p[i], new[i]
+        diagonal = A[i, i] - 2 * vi * pi
+        A[i, i] = diagonal
+        total = diagonal * ni
+        row, p_row, v_row = A[i, i + 1 : n], p[i + 1 : n], v[i + 1 : n]
+        new_row, product_row = new[i + 1 : n], product[i + 1 : n]
+        for j in range(row.size):
+            a = row[j] - vi * p_row[j] - pi * v_row[j]
+            row[j] = a
+            total += a * new_row[j]
+            product_row[j] += a * ni
+        product[i] += total
+
+
+@nb.njit(cache=True, fastmath=SUMS, error_model="numpy")
 def tridiagonalise(
     A: FloatArray, n: int, rows: FloatArray, diagonal: FloatArray, off: FloatArray
 ) -> None:  # pragma: no cover
     """Bring A (n×n, upper triangle, destroyed) to tridiagonal form by Householder reflections."""
-    v, p = np.empty(n), np.empty(n)
+    v, p = np.zeros(n), np.zeros(n)
+    new, product, reflected = np.zeros(n), np.empty(n), np.empty(8)
     for k in range(n - 2):
+        for j in range(k, n):  # the previous reflection, of row k
+            A[k, j] -= v[k] * p[j] + p[k] * v[j]
         diagonal[k] = A[k, k]
         norm = 0.0
         for j in range(k + 1, n):
             norm += A[k, j] ** 2
+            new[j] = A[k, j]
         norm = np.sqrt(norm)
-        if norm == 0.0:
-            off[k] = 0.0
-            continue
         head = A[k, k + 1]
         alpha = -norm if head > 0 else norm
         off[k] = alpha
-        beta = 1.0 / (norm * (norm + abs(head)))
+        new[k + 1] -= alpha
+        beta = 1.0 / (norm * (norm + abs(head))) if norm > 0.0 else 0.0
+        _update_and_multiply(A, k + 1, n, v, p, new, product)
+        overlap = 0.0
         for j in range(k + 1, n):
-            v[j] = A[k, j]
-            p[j] = 0.0
-        v[k + 1] -= alpha
-        for i in range(k + 1, n):
-            total = A[i, i] * v[i]
-            vi = v[i]
-            for j in range(i + 1, n):
-                total += A[i, j] * v[j]
-                p[j] += A[i, j] * vi
-            p[i] += total
-        pv = 0.0
+            product[j] *= beta
+            overlap += product[j] * new[j]
+        overlap *= 0.5 * beta
         for j in range(k + 1, n):
-            p[j] *= beta
-            pv += p[j] * v[j]
-        pv *= 0.5 * beta
+            v[j] = new[j]
+            p[j] = product[j] - overlap * new[j]
+        reflected[:] = 0.0
         for j in range(k + 1, n):
-            p[j] -= pv * v[j]
-        for i in range(k + 1, n):
-            vi, pi = v[i], p[i]
-            for j in range(i, n):
-                A[i, j] -= vi * p[j] + pi * v[j]
-        for c in range(8):
-            total = 0.0
-            for j in range(k + 1, n):
-                total += v[j] * rows[j, c]
-            total *= beta
-            for j in range(k + 1, n):
-                rows[j, c] -= total * v[j]
+            _subtract(reflected, -beta * new[j], rows[j])
+        for j in range(k + 1, n):
+            _subtract(rows[j], new[j], reflected)
     for k in range(max(n - 2, 0), n):
+        for j in range(k, n):
+            A[k, j] -= v[k] * p[j] + p[k] * v[j]
         diagonal[k] = A[k, k]
     if n > 1:
         off[n - 2] = A[n - 2, n - 1]

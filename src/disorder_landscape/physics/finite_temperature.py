@@ -36,12 +36,12 @@ from disorder_landscape.physics.residues import conductance_residues, pole_sum
 from disorder_landscape.physics.resonances import (
     CUBIC,
     UPPER,
-    dressed_green_functions,
-    end_vector,
+    chosen_vectors,
+    green_functions_at,
+    level_products,
     polish_poles,
     right_half,
     start_poles,
-    upper_products,
 )
 from disorder_landscape.physics.thermal_poles import (
     REACH,
@@ -50,11 +50,12 @@ from disorder_landscape.physics.thermal_poles import (
     thermal_pole,
 )
 
+DROP = 1e-11
 CHUNK = 4
 """Chemical potentials of one task: with CHECKS energies each they fill the lanes."""
 CHECKS = 4
 """Energies at which the model is compared with the solver."""
-NODES = (8, 12, 16, 24, 32, 48)
+NODES = (12, 13, 10, 16, 20, 24, 32)
 """Numbers of nodes that are tried in turn."""
 TOLERANCE = 5e-5
 """Estimated error in e²/h above which nodes are added."""
@@ -76,6 +77,7 @@ class _Plan(NamedTuple):
     kT: float
     slopes: FloatArray  # (wire, 2, node + CHECKS): of the normal and anomalous terms
     hop: FloatArray  # (wire,)
+    drop: float
 
 
 def _plan(wires: Sequence[Nanowire], bias: FloatArray, kT: float, nodes: int) -> _Plan:
@@ -103,6 +105,7 @@ def _plan(wires: Sequence[Nanowire], bias: FloatArray, kT: float, nodes: int) ->
         kT=kT,
         slopes=slopes,
         hop=hop,
+        drop=DROP,
     )
 
 
@@ -218,30 +221,36 @@ def _average(
     """Write the thermal conductances of one set, shape (bias, 4); return the error estimate."""
     m = plan.nodes
     E, weight = np.empty(8 * m), np.empty((8 * m, 8))
-    count = wire_levels(plan.omega[:m], isolated, slope, E, weight)
+    count = wire_levels(plan.omega[:m], isolated, slope, E, weight, plan.drop)
     if count == 0:
         return np.inf
     E, weight = E[:count], weight[:count]
     lead = np.empty((CUBIC, 8, 8), dtype=np.complex128)
     for k in range(CUBIC):
         _chiral_self_energy(sigma[plan.picks[k]], hop, lead[k])
-    z, x = np.empty(2 * count, dtype=np.complex128), np.empty((2 * count, 2 * count), dtype=np.complex128)
+    z = np.empty(2 * count, dtype=np.complex128)
+    up, down = np.zeros((4 * count, count)), np.zeros((4 * count, count))
     at = plan.picks[1]
     started, both = start_poles(
-        plan.omega[at], isolated[at], lead[1], plan.window, hop, E, weight, z, x
+        plan.omega[at], isolated[at], lead[1], plan.window, hop, E, weight, z, up, down
     )
-    z, x = z[:started], x[:started]
-    products, terms = upper_products(weight), _self_energy_terms(plan, lead)
-    polish_poles(z, x, E, weight, products, terms)
-    paired, single = right_half(z, x)
+    kept = np.arange(started)
+    z, up, down = z[:started], chosen_vectors(up, kept, 2 * count), chosen_vectors(down, kept, 2 * count)
+    levels, terms = level_products(E, weight), _self_energy_terms(plan, lead)
+    v = polish_poles(z, up, down, levels, terms)
+    paired, single = right_half(z, v, up, down)
     if 2 * paired + single != both:
         return np.inf
     half = paired + single
-    z, v = z[:half], np.empty((half, 8), dtype=np.complex128)
+    z, v = z[:half], v[:half]
+    at_poles_and_checks = np.empty(half + CHECKS, dtype=np.complex128)
     for k in range(half):
-        end_vector(x[k], weight, v[k])
+        at_poles_and_checks[k] = np.conj(z[k])
+    for k in range(CHECKS):
+        at_poles_and_checks[half + k] = plan.omega[m + k]
+    G = green_functions_at(at_poles_and_checks, levels, terms)
     r = np.empty((half, 2, 4), dtype=np.complex128)
-    conductance_residues(z, v, E, products, terms, r)
+    conductance_residues(z, v, G[:half], terms, r)
     out[:] = 0.0
     poles_at = np.empty(4)
     for k in range(m):
@@ -261,32 +270,23 @@ def _average(
                 kernel = thermal_pole(z[j], -plan.bias[b], plan.kT)
                 for c in range(4):
                     out[b, c] += 2 * (kernel * r[j, 1, c]).real
-    return SAFETY * hop * _mismatch(plan, z, E, products, terms, green)
+    return SAFETY * hop * _mismatch(plan, z, G[half:], green)
 
 
 @nb.njit(cache=True, error_model="numpy")
 def _mismatch(
-    plan: _Plan,
-    z: ComplexArray,
-    E: FloatArray,
-    products: FloatArray,
-    terms: ComplexArray,
-    green: ComplexArray,
+    plan: _Plan, z: ComplexArray, G: ComplexArray, green: ComplexArray
 ) -> float:  # pragma: no cover
     """Return the largest difference of model and solver at the checks, in 1/meV.
 
     A pole misplaced by δ shows as v²δ/(ω − z)² and counts as v²δ/(kT)² in the average: so a
     difference is scaled down where a pole is nearer than kT.
     """
-    sigma = np.empty((CHECKS, 8, 8), dtype=np.complex128)
-    G = np.empty((CHECKS, 8, 8), dtype=np.complex128)
-    at = plan.omega[plan.nodes :].astype(np.complex128)
-    dressed_green_functions(at, E, products, terms, sigma, G)
     worst = 0.0
     for k in range(CHECKS):
         nearest = plan.kT
         for n in range(z.size):
-            nearest = min(nearest, abs(at[k] - z[n]))
+            nearest = min(nearest, abs(plan.omega[plan.nodes + k] - z[n]))
         largest = 0.0
         for i in range(8):
             for j in range(i, 8):

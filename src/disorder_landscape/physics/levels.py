@@ -143,12 +143,12 @@ def _loewner_pencil(
     b: FloatArray,
 ) -> None:  # pragma: no cover
     """Write the products ⟨j|k⟩, ⟨j|A|k⟩ and the rows P of the normalised basis."""
-    nodes = omega.size
+    nodes, size = omega.size, G.shape[1]
     phi, dphi = np.empty((nodes, 8, 8)), np.empty((nodes, 8, 8))
     for k in range(nodes):
         w = omega[k]
-        for i in range(8):
-            for j in range(8):
+        for i in range(size):
+            for j in range(size):
                 if i < 4 and j < 4:
                     p, d = G[k, i, j] / w, (slope[k, i, j] - G[k, i, j] / w) / w
                 elif i >= 4 and j >= 4:
@@ -160,16 +160,16 @@ def _loewner_pencil(
                 phi[k, i, j], dphi[k, i, j] = p, d / (2 * w)
     scale = np.empty(8 * nodes)
     for k in range(nodes):
-        for i in range(8):
+        for i in range(size):
             scale[8 * k + i] = 1.0 / np.sqrt(-dphi[k, i, i])
-            for c in range(8):
+            for c in range(size):
                 b[8 * k + i, c] = scale[8 * k + i] * phi[k, i, c]
     for k in range(nodes):
         xk = omega[k] ** 2
         for m in range(k, nodes):
             xm = omega[m] ** 2
-            for i in range(8):
-                for j in range(8):
+            for i in range(size):
+                for j in range(size):
                     if k == m:
                         norm = -dphi[k, i, j]
                         energy = -phi[k, i, j] + xk * norm
@@ -185,7 +185,12 @@ def _loewner_pencil(
 
 @nb.njit(cache=True, error_model="numpy")
 def wire_levels(
-    omega: FloatArray, G: FloatArray, slope: FloatArray, E: FloatArray, weight: FloatArray
+    omega: FloatArray,
+    G: FloatArray,
+    slope: FloatArray,
+    E: FloatArray,
+    weight: FloatArray,
+    drop: float,
 ) -> int:  # pragma: no cover
     """Find the levels from G and dG/dω at the nodes.
 
@@ -210,7 +215,7 @@ def wire_levels(
     R, A, off = np.empty((n, n)), np.empty((n, n)), np.empty(n)
     order = np.empty(n, dtype=np.int64)
     _loewner_pencil(omega, G, slope, N, K, b)
-    rank = pivoted_cholesky(N, DROP, R, order)
+    rank = pivoted_cholesky(N, drop, R, order)
     if rank == 0:
         return 0
     reduce_pencil(K, b, R, order, rank, A, weight)

@@ -15,12 +15,7 @@ import numpy as np
 
 from disorder_landscape.physics.hamiltonian import ComplexArray
 from disorder_landscape.physics.parameters import FloatArray
-from disorder_landscape.physics.resonances import (
-    CUBIC,
-    POLES,
-    dressed_green_functions,
-    upper_index,
-)
+from disorder_landscape.physics.resonances import CUBIC, upper_index
 
 PAIRS = ((0, 1), (2, 3), (0, 2), (1, 3), (0, 3), (1, 2))
 """Pairs of channel sets Le, Lh, Re, Rh: Andreev at L, at R, then ee, hh, eh, he."""
@@ -36,55 +31,58 @@ def to_physical(v: ComplexArray, out: ComplexArray) -> None:  # pragma: no cover
         out[4 * end + 2], out[4 * end + 3] = half * (c0 - c2), half * (c3 - c1)
 
 
+@nb.njit(cache=True)
+def _end_to_chiral(end: int, c: ComplexArray, out: ComplexArray) -> None:  # pragma: no cover
+    """Write the chiral form, shape (8,), of a vector (u↑, u↓, −v↓, v↑) on one end."""
+    half = np.sqrt(0.5)
+    out[:] = 0j
+    out[2 * end], out[2 * end + 1] = half * (c[1] + c[2]), half * (c[0] - c[3])
+    out[4 + 2 * end], out[5 + 2 * end] = half * (c[1] - c[2]), half * (c[0] + c[3])
+
+
 @nb.njit(cache=True, error_model="numpy")
 def conductance_residues(
-    z: ComplexArray,
-    v: ComplexArray,
-    E: FloatArray,
-    products: FloatArray,
-    terms: ComplexArray,
-    out: ComplexArray,
+    z: ComplexArray, v: ComplexArray, G: ComplexArray, terms: ComplexArray, out: ComplexArray
 ) -> None:  # pragma: no cover
-    """Write the residues of G_LL, G_RR, G_LR, G_RL, electrons and holes incident: (pole, 2, 4)."""
-    sigma = np.empty((POLES, 8, 8), dtype=np.complex128)
-    G = np.empty((POLES, 8, 8), dtype=np.complex128)
-    rows, columns = np.empty((8, 8), dtype=np.complex128), np.empty((8, 8), dtype=np.complex128)
-    gamma, g_rows = np.empty((8, 8), dtype=np.complex128), np.empty((8, 8), dtype=np.complex128)
-    vector, y = np.empty(8, dtype=np.complex128), np.empty(8, dtype=np.complex128)
+    """Write the residues of G_LL, G_RR, G_LR, G_RL, electrons and holes incident: (pole, 2, 4).
+
+    v: shape (pole, 8), G: G(z*), shape (pole, 8, 8), both in the chiral basis.
+    """
+    size = v.shape[1]
+    y, physical = np.empty(8, dtype=np.complex128), np.empty(8, dtype=np.complex128)
+    part = np.empty(4, dtype=np.complex128)
+    chiral = np.empty((4, 8), dtype=np.complex128)
     p = np.empty(6, dtype=np.complex128)
-    for first in range(0, z.size, POLES):
-        last = min(first + POLES, z.size)
-        dressed_green_functions(np.conj(z[first:last]), E, products, terms, sigma, G)
-        for k in range(first, last):
-            to_physical(v[k], vector)
-            for i in range(8):
-                to_physical(G[k - first, i], rows[i])
-                for j in range(8):
-                    at = upper_index(i, j)
-                    value = 0j
-                    for power in range(CUBIC - 1, -1, -1):
-                        value = value * z[k] - 2 * terms[power, at].imag
-                    gamma[i, j] = value
-            for i in range(8):
-                to_physical(gamma[i], g_rows[i])
-            for i in range(8):
-                to_physical(rows[:, i], columns[i])
-                to_physical(g_rows[:, i], gamma[i])
-            for a in range(0, 8, 2):  # y = Γ v
-                for i in range(a, a + 2):
-                    y[i] = gamma[i, a] * vector[a] + gamma[i, a + 1] * vector[a + 1]
-            for pair in range(6):
-                a, b = PAIRS[pair]
-                p[pair] = 0j
-                for i in range(2 * a, 2 * a + 2):
-                    for j in range(2 * b, 2 * b + 2):
-                        p[pair] += y[i] * np.conj(columns[j, i]) * y[j]
-            al, ar, ee, hh, eh, he = p
-            r = out[k]
-            r[0, 0], r[0, 1] = 2 * al + ee + eh, 2 * ar + ee + he
-            r[0, 2], r[0, 3] = ee - he, ee - eh
-            r[1, 0], r[1, 1] = 2 * al + hh + he, 2 * ar + hh + eh
-            r[1, 2], r[1, 3] = hh - eh, hh - he
+    for k in range(z.size):
+        y[:] = 0j
+        for i in range(size):  # y = Γ v
+            for j in range(size):
+                if (i // 2) % 2 == (j // 2) % 2:  # on the same end
+                    e = upper_index(i, j)
+                    value = complex(terms[CUBIC - 1, e].imag)
+                    for power in range(CUBIC - 2, -1, -1):
+                        value = value * z[k] + terms[power, e].imag
+                    y[i] -= 2 * value * v[k, j]
+        to_physical(y, physical)
+        for block in range(4):
+            part[:] = 0j
+            first = 2 * (block % 2)
+            part[first : first + 2] = physical[2 * block : 2 * block + 2]
+            _end_to_chiral(block // 2, part, chiral[block])
+        for pair in range(6):
+            a, b = PAIRS[pair]
+            p[pair] = 0j
+            for i in range(size):
+                if (i // 2) % 2 == a // 2:
+                    for j in range(size):
+                        if (j // 2) % 2 == b // 2:
+                            p[pair] += chiral[a, i] * np.conj(G[k, i, j]) * chiral[b, j]
+        al, ar, ee, hh, eh, he = p
+        r = out[k]
+        r[0, 0], r[0, 1] = 2 * al + ee + eh, 2 * ar + ee + he
+        r[0, 2], r[0, 3] = ee - he, ee - eh
+        r[1, 0], r[1, 1] = 2 * al + hh + he, 2 * ar + hh + eh
+        r[1, 2], r[1, 3] = hh - eh, hh - he
 
 
 @nb.njit(cache=True, error_model="numpy")
