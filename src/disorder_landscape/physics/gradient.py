@@ -149,6 +149,7 @@ def _gradient_kernel(
     """Fill by_V (B, mu·bias, 4, site), others (B, mu·bias, 4, 3) and the growth (B, mu·bias)."""
     L, biases = LANES, p.normal.size
     fields, pairs, _, sites = by_V.shape
+    per_hop = 1.0 / p.hop
     pieces = (pairs + L - 1) // L
     for task in nb.prange(fields * pieces):
         field, first = task // pieces, task % pieces * L
@@ -187,13 +188,14 @@ def _gradient_kernel(
             turn = 2 * p.zeeman[field] * p.angle_slope[n]
             c, d = np.cos(np.pi / 4 - p.angle[n]), np.sin(np.pi / 4 - p.angle[n])
             columns.contract(b, P, now if n > 0 else zero, p.V[n], c, d, turn)
-            for l in range(min(L, pairs - first)):
-                for k in range(4):
-                    trace = b[(columns.SITE_SUM + k) * L + l]
-                    by_V[field, first + l, k, n] = -trace / p.hop
+            for k in range(4 * L):
+                records[n, k] = b[columns.SITE_SUM * L + k]  # the record is no longer needed
         for l in range(min(L, pairs - first)):
             growth[field, first + l] = b[columns.GROWTH * L + l]
             _collect(b, p, field, l, ends[l], others[field, first + l])
+            for k in range(4):
+                for n in range(sites):
+                    by_V[field, first + l, k, n] = -records[n, k * L + l] * per_hop
 
 
 def conductance_gradient(

@@ -18,7 +18,18 @@ from disorder_landscape.physics.hamiltonian import PAULI, ComplexArray
 from disorder_landscape.physics.parameters import FloatArray, Nanowire
 
 
-@nb.njit(cache=True)
+_options = {"cache": True, "fastmath": {"contract", "nsz", "reassoc"}, "error_model": "numpy"}
+
+
+@nb.njit(**_options)
+def _share(k: int, same_lead: bool, same_charge: bool) -> float:  # pragma: no cover
+    """Return c_b of conductance k for the channel set b that compares so with the incident one."""
+    if same_lead:
+        return 2.0 if k < 2 and not same_charge else 0.0
+    return 1.0 if k < 2 or same_charge else -1.0
+
+
+@nb.njit(**_options)
 def end_responses(
     G: ComplexArray,
     sigma: ComplexArray,
@@ -46,53 +57,54 @@ def end_responses(
     answer : array, shape (4, 2)
         Derivatives of the four conductances with respect to the two, through the leads alone.
     """
-    Z = np.empty((8, 2), dtype=np.complex128)
+    U, Z = np.empty((2, 8), dtype=np.complex128), np.empty((2, 8), dtype=np.complex128)
     for k in range(4):
         lead = 0 if k == 0 or k == 3 else 1
-        a = 2 * lead + hole
-        gamma_a = -2 * sigma[lead, hole].imag
-        answer[k] = 0.0
+        a = 2 * (2 * lead + hole)
+        by_first, by_second = 0.0, 0.0
         for b in range(4):
-            same_lead, same_charge = b // 2 == lead, b % 2 == hole
-            c = 0.0 if same_charge else 2.0
-            if not same_lead:
-                c = 1.0 if same_charge or k < 2 else -1.0
-            elif k >= 2:
-                c = 0.0
-            gamma_b = -2 * sigma[b // 2, b % 2].imag
-            g = np.ascontiguousarray(G[2 * a : 2 * a + 2, 2 * b : 2 * b + 2])
+            c = _share(k, b // 2 == lead, b % 2 == hole)
+            gamma, first = sigma[b // 2, b % 2], slopes[0, b // 2, b % 2]
+            second = slopes[1, b // 2, b % 2]
+            for j in range(2 * b, 2 * b + 2):
+                for i in range(2):
+                    U[i, j], Z[i, j] = 0.0, 0.0
+                    for q in range(2):
+                        U[i, j] -= 2 * c * gamma[q, j % 2].imag * np.conj(G[a + i, 2 * b + q])
+                        Z[i, j] -= 2 * c * sigma[lead, hole, i, q].imag * np.conj(G[a + q, j])
             for i in range(2):
                 for j in range(2):
-                    T[k, i, 2 * b + j] = 0.0
-                    for p in range(2):
-                        for q in range(2):
-                            weight = c * gamma_a[i, p] * gamma_b[q, j]
-                            T[k, i, 2 * b + j] += weight * np.conj(g[p, q])
-            for d in range(2):
-                slope_a = -2 * slopes[d, lead, hole].imag
-                slope_b = -2 * slopes[d, b // 2, b % 2].imag
-                for i in range(2):
-                    for j in range(2):
-                        for p in range(2):
-                            for q in range(2):
-                                weight = slope_a[i, p] * gamma_b[q, j]
-                                weight += gamma_a[i, p] * slope_b[q, j]
-                                answer[k, d] += (c * weight * np.conj(g[p, q]) * g[i, j]).real
-        for p in range(8):
-            for i in range(2):
-                total = 0j
+                    for q in range(2):
+                        weight = (Z[i, 2 * b + q] * G[a + i, 2 * b + j]).real
+                        by_first -= 2 * first[q, j].imag * weight
+                        by_second -= 2 * second[q, j].imag * weight
+        for i in range(2):
+            for q in range(2):
+                total = 0.0
                 for j in range(8):
-                    total += G[p, j] * T[k, i, j]
-                Z[p, i] = total
+                    total += (G[a + i, j] * U[q, j]).real
+                by_first -= 2 * slopes[0, lead, hole, q, i].imag * total
+                by_second -= 2 * slopes[1, lead, hole, q, i].imag * total
+        for i in range(2):
+            for j in range(8):
+                Z[i, j] = 0.0
+                T[k, i, j] = 0.0
+                for q in range(2):
+                    T[k, i, j] -= 2 * sigma[lead, hole, i, q].imag * U[q, j]
+        for j in range(8):
+            for p in range(8):
+                Z[0, p] += T[k, 0, j] * G[j, p]
+                Z[1, p] += T[k, 1, j] * G[j, p]
         for p in range(8):
             for q in range(8):
-                Y[k, p, q] = Z[p, 0] * G[2 * a, q] + Z[p, 1] * G[2 * a + 1, q]
-        for d in range(2):
-            for b in range(4):
-                for i in range(2):
-                    for j in range(2):
-                        slope = slopes[d, b // 2, b % 2, j, i]
-                        answer[k, d] += 2 * (Y[k, 2 * b + i, 2 * b + j] * slope).real
+                Y[k, p, q] = Z[0, p] * G[a, q] + Z[1, p] * G[a + 1, q]
+        for b in range(4):
+            for i in range(2):
+                for j in range(2):
+                    response = 2 * Y[k, 2 * b + i, 2 * b + j]
+                    by_first += (response * slopes[0, b // 2, b % 2, j, i]).real
+                    by_second += (response * slopes[1, b // 2, b % 2, j, i]).real
+        answer[k, 0], answer[k, 1] = by_first, by_second
 
 
 def lead_slopes(wire: Nanowire, B: float, omega: FloatArray, sigma: ComplexArray) -> ComplexArray:
