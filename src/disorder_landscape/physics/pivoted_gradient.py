@@ -6,17 +6,13 @@ elimination without pivoting has lost digits, as `pivoted` does for the conducta
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.linalg import solve_banded
 
 from disorder_landscape.physics import hamiltonian as h
+from disorder_landscape.physics.gradient_kernel import Problem
 from disorder_landscape.physics.parameters import FloatArray
 from disorder_landscape.physics.responses import end_responses
-
-if TYPE_CHECKING:
-    from disorder_landscape.physics.gradient import Problem
 
 BANDWIDTH = 4
 """Sub- and superdiagonals of M."""

@@ -17,7 +17,6 @@ import numpy as np
 from disorder_landscape.physics.hamiltonian import PAULI, ComplexArray
 from disorder_landscape.physics.parameters import FloatArray, Nanowire
 
-
 _options = {"cache": True, "fastmath": {"contract", "nsz", "reassoc"}, "error_model": "numpy"}
 
 
