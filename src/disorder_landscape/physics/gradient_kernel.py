@@ -39,7 +39,10 @@ class Problem(NamedTuple):
 def _sweep(
     b: FloatArray, sites: FloatArray, V: FloatArray, x: FloatArray, z: FloatArray, s: FloatArray
 ) -> None:  # pragma: no cover
-    """Fill the sites' records, and E, C and D of M' into s as `eliminate_inner_sites` does."""
+    """Fill the sites' records, and E, C and D of M' into s as `eliminate_inner_sites` does.
+
+    The growth is the largest of |1/Δ| and of the squared entries of M': the loss of digits.
+    """
     L, last = LANES, V.size - 1
     P = columns.P_AT * L
     columns.start(b, V[last - 1], x[last - 1], z[last - 1])
@@ -60,6 +63,8 @@ def _sweep(
             for l in range(L):
                 entry = sites[last - 1, P + (4 * j + i) * L + l]
                 s[(C_AT + 4 * i + j) * L + l] = entry if j < 2 else -entry
+    for k in range(36 * L):  # a large M', of a level of the inner sites, cancels against large X_n
+        b[columns.GROWTH * L + k % L] = max(b[columns.GROWTH * L + k % L], s[k] ** 2)
 
 
 @nb.njit(cache=True)
