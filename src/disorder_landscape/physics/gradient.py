@@ -97,17 +97,17 @@ def conductance_gradient(
         "bias": grid_in("bias", bias, -edge, edge, "meV"),
     }
     p = _prepare(wire, *grids.values())
-    pairs = grids["mu"].size * grids["bias"].size
-    by_V = np.empty((grids["B"].size, pairs, 4, wire.sites))
-    others, growth = np.empty((*by_V.shape[:3], 3)), np.empty(by_V.shape[:2])
+    B_size, pairs = grids["B"].size, grids["mu"].size * grids["bias"].size
+    by_V, growth = np.empty((4, B_size, pairs, wire.sites)), np.empty((B_size, pairs))
+    others = np.empty((B_size, pairs, 4, 3))
     gradient_kernel(p, nb.get_num_threads(), by_V, others, growth)
     for field, pair in np.argwhere(~(growth < growth_limit)):  # so that NaN pivots too
-        pivoted_gradient(p, field, pair, by_V[field, pair], others[field, pair])
-    shape = grids["B"].size, grids["mu"].size, grids["bias"].size
+        pivoted_gradient(p, field, pair, by_V[:, field, pair], others[field, pair])
+    shape = B_size, grids["mu"].size, grids["bias"].size
     data: dict[str, object] = {}
     for k, name in enumerate(CONDUCTANCES):
         for i, parameter in enumerate(PARAMETERS):
-            values = by_V[:, :, k] if i == 0 else others[:, :, k, i - 1, None]
+            values = by_V[k] if i == 0 else others[:, :, k, i - 1, None]
             values = values.reshape(*shape, -1).swapaxes(0, 1)
             dims = (*grids, "site") if i == 0 else tuple(grids)
             attrs = {

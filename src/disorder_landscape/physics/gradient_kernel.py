@@ -124,7 +124,7 @@ def _solve_lanes(
     others: FloatArray,
     growth: FloatArray,
 ) -> None:  # pragma: no cover
-    """Fill by_V (lane, 4, site), others (lane, 4, 3), growth (lane) for pairs from `first` on."""
+    """Fill by_V (4, lane, site), others (lane, 4, 3), growth (lane) for pairs from `first` on."""
     L, sites, biases, per_hop = LANES, p.V.size, p.normal.size, 1.0 / p.hop
     b, s, Q = np.zeros(columns.ENTRIES * L), np.empty(STATE * L), np.zeros((3, 16 * L))
     energy = np.empty(L, dtype=np.int64)
@@ -152,19 +152,19 @@ def _solve_lanes(
         contract(b, P, now if n > 0 else zero, p.V[n], c, d, turn)
         for k in range(4 * L):
             records[n, k] = b[columns.SITE_SUM * L + k]  # the record is no longer needed
-    for l in range(by_V.shape[0]):
+    for l in range(growth.size):
         growth[l] = b[columns.GROWTH * L + l]
         _collect(b, p, field, l, ends[l], others[l])
         for k in range(4):
             for n in range(sites):
-                by_V[l, k, n] = -records[n, k * L + l] * per_hop
+                by_V[k, l, n] = -records[n, k * L + l] * per_hop
 
 
 @nb.njit(cache=True, parallel=True)
 def gradient_kernel(
     p: Problem, workers: int, by_V: FloatArray, others: FloatArray, growth: FloatArray
 ) -> None:  # pragma: no cover
-    """Fill by_V (B, mu·bias, 4, site), others (B, mu·bias, 4, 3) and the growth (B, mu·bias)."""
+    """Fill by_V (4, B, mu·bias, site), others (B, mu·bias, 4, 3) and the growth (B, mu·bias)."""
     fields, pairs = growth.shape
     pieces = (pairs + LANES - 1) // LANES
     for worker in nb.prange(workers):
@@ -172,5 +172,5 @@ def gradient_kernel(
         for task in range(worker, fields * pieces, workers):
             field, first = task // pieces, task % pieces * LANES
             some = slice(first, min(first + LANES, pairs))
-            out = by_V[field, some], others[field, some], growth[field, some]
+            out = by_V[:, field, some], others[field, some], growth[field, some]
             _solve_lanes(p, field, first, records, *out)
