@@ -8,7 +8,7 @@ Eliminating the inner sites from the right, or from the left, D ← A_n − τz 
 
 and E and D of M' as the last D of each, C = P_{N−2}ᵀ τz. To first order M' changes by X_nᵀ dA_n X_n
 with the onsite block A_n, so a conductance by Tr[S X_nᵀ dA_n X_n], S real symmetric, one for each
-conductance and lane (`responses`). All work per site is real.
+conductance and lane (`responses`); `contraction` sums it. All work per site is real.
 
 It is done in the frame of spin along (+) and against (−) the field at site n: rows e+, e−, h+, h−
 of X_n. There V and B are diagonal. α changes t', in whose units all of A_n is measured, and turns

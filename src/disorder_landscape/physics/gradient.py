@@ -2,6 +2,10 @@
 
 The same real elimination as `recursion`, from both sides, gives the columns of the Green's function
 that the derivatives need (`columns`); what the ends and the leads contribute is in `responses`.
+
+Measured on one AVX-512 core with 300 sites (64 μ × 4 B × 8 biases, one thread, medians of runs
+interleaved with `fast_solver.bare_conductance`): 18 µs per point, 7.7 times the conductance. The
+products of `contraction` take over half of it, the two sweeps and the waves about a quarter.
 """
 
 from __future__ import annotations
