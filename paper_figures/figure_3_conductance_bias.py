@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from command import Request, figure_script
 from conductance_maps import draw_conductance_blocks
 from disorder_landscape import Nanowire, conductance
+from disorder_landscape.physics.labels import CONDUCTANCES
 from wires import drawn_realizations, simulate_rows
 
 MU = 0.0
@@ -34,9 +35,8 @@ def data(request: Request) -> xr.Dataset:
             B,
             bias,
             temperature=config.dataset.temperature,
-            energy_spacing=figures.energy_spacing,
         )
-        return G.isel(mu=0)
+        return G[list(CONDUCTANCES)].isel(mu=0)
 
     return simulate_rows(drawn_realizations(request.evaluation(), config), simulate)
 

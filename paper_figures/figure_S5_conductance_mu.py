@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from command import Request, figure_script
 from conductance_maps import draw_conductance_blocks
 from disorder_landscape import Nanowire, conductance
+from disorder_landscape.physics.labels import CONDUCTANCES
 from wires import drawn_realizations, simulate_rows
 
 BIAS = 0.0
@@ -33,9 +34,8 @@ def data(request: Request) -> xr.Dataset:
             B,
             BIAS,
             temperature=config.dataset.temperature,
-            energy_spacing=figures.S5_energy_spacing,
         )
-        return G.isel(bias=0)
+        return G[list(CONDUCTANCES)].isel(bias=0)
 
     return simulate_rows(drawn_realizations(request.evaluation(), config), simulate)
 

@@ -64,15 +64,14 @@ def data(request: Request) -> xr.Dataset:
     fine_mu = np.linspace(0.0, MU_MAX, figures.visibility_refinement * figures.pristine_mu_points)
     fine_B = np.linspace(0.0, B_MAX, figures.visibility_refinement * figures.pristine_B_points)
     bias = np.linspace(-figures.bias_max, figures.bias_max, figures.bias_points)
-    spacing = figures.energy_spacing
 
-    with tqdm(unit=" energies", unit_scale=True, delay=2, desc="simulate") as bar:
+    with tqdm(unit=" settings", delay=2, desc="simulate") as bar:
 
         def progress(done: int, in_all: int) -> None:
             bar.total = in_all
             bar.update(done)
 
-        G = conductance(wire, mu, B, 0.0, energy_spacing=spacing, progress=progress)
+        G = conductance(wire, mu, B, 0.0, progress=progress)
     T_IV = topological_visibility(wire, fine_mu, fine_B).sel(lead="L", drop=True)
     transition = xr.DataArray(
         transition_field(wire, fine_mu),
@@ -82,7 +81,7 @@ def data(request: Request) -> xr.Dataset:
     )
     panels = [_lettered(G.isel(bias=0, drop=True), "b")]
     for letter in "cd":
-        at_cut = conductance(wire, CUTS[f"mu_{letter}"], B, bias, energy_spacing=spacing)
+        at_cut = conductance(wire, CUTS[f"mu_{letter}"], B, bias)
         panels.append(_lettered(at_cut.isel(mu=0, drop=True), letter))
     merged = xr.merge([T_IV.rename(mu="mu_a", B="B_a"), transition, *panels])
     parameters = {name: getattr(wire, name) for name in ("alpha", "gamma", "delta0", "g")}
@@ -91,7 +90,7 @@ def data(request: Request) -> xr.Dataset:
 
 
 def _lettered(G: xr.Dataset, letter: str) -> xr.Dataset:
-    return G.rename({name: f"{name}_{letter}" for name in CONDUCTANCES})
+    return G[list(CONDUCTANCES)].rename({name: f"{name}_{letter}" for name in CONDUCTANCES})
 
 
 def draw(data: xr.Dataset) -> Figure:

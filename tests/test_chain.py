@@ -85,7 +85,7 @@ def test_a_finished_chain_is_left_alone(run, build):
 def test_predict_from_a_file_is_predict_from_the_library(run, tmp_path):
     config = run.config.dataset
     wire = realization(config, 1100).wire
-    G = conductance(wire, config.mu, config.B, config.bias, energy_spacing=config.energy_spacing)
+    G = conductance(wire, config.mu, config.B, config.bias)
     G.to_netcdf(tmp_path / "wire.nc", engine="h5netcdf")
     landscape("predict", tmp_path / "wire.nc", "--model", run.model_folder, "-o", tmp_path / "Y.nc")
     Y = xr.load_dataset(tmp_path / "Y.nc", engine="h5netcdf")

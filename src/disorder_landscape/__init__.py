@@ -7,6 +7,7 @@ Nanowires".
 from typing import TYPE_CHECKING, Any
 
 from disorder_landscape.arguments import ArgumentError
+from disorder_landscape.physics.gradient import conductance_gradient
 from disorder_landscape.physics.parameters import Nanowire
 from disorder_landscape.physics.topology import topological_visibility
 from disorder_landscape.physics.transport import conductance
@@ -14,7 +15,14 @@ from disorder_landscape.physics.transport import conductance
 if TYPE_CHECKING:
     from disorder_landscape.learning.prediction import predict
 
-__all__ = ["ArgumentError", "Nanowire", "conductance", "predict", "topological_visibility"]
+__all__ = [
+    "ArgumentError",
+    "Nanowire",
+    "conductance",
+    "conductance_gradient",
+    "predict",
+    "topological_visibility",
+]
 
 
 def __getattr__(name: str) -> Any:

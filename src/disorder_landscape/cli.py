@@ -107,7 +107,7 @@ def simulate(
         name: simulation.parse_grid(name, text)
         for name, text in {"mu": mu, "B": B, "bias": bias}.items()
     }
-    with tqdm(unit=" energies", unit_scale=True, delay=1, desc="simulate") as bar:
+    with tqdm(unit=" settings", delay=1, desc="simulate") as bar:
 
         def progress(done: int, in_all: int) -> None:
             bar.total = in_all

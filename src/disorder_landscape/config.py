@@ -21,7 +21,6 @@ from disorder_landscape.physics.parameters import (
     TEMPERATURE,
     FloatArray,
 )
-from disorder_landscape.physics.thermal import ENERGY_SPACING
 
 Positive = Annotated[int, Field(ge=1)]
 LearningRate = Annotated[float, Field(gt=0, le=1)]
@@ -55,8 +54,8 @@ class DatasetConfig(_Section):
     """V_bias in meV."""
     temperature: Annotated[float, Field(ge=0, le=10)] = TEMPERATURE
     """In K."""
-    energy_spacing: Annotated[float, Field(gt=0, le=0.1)] = ENERGY_SPACING
-    """Of the energies that the temperature averages over, in meV."""
+    energy_spacing: Annotated[float, Field(gt=0, le=0.1)] | None = None
+    """Of a grid of energies to average over, in meV, as the paper does; none averages exactly."""
     seed: Annotated[int, Field(ge=0)] = 0
     shard_size: Positive = 50
     """Realizations per file."""
@@ -139,11 +138,6 @@ class FiguresConfig(_Section):
     """Fig. S9 is one wire only, and the same at every preset unless these are set."""
     bias_max: Annotated[float, Field(gt=0, le=1)] = 0.04
     """The maps reach from minus this V_bias to this, in meV."""
-    energy_spacing: Annotated[float, Field(gt=0, le=0.1)] = 0.1e-3
-    """Of the energies that the temperature averages over, in meV. It is a fifth of the dataset's
-    default: a narrow resonance that falls on an energy shows as a speckle in a map."""
-    S5_energy_spacing: Annotated[float, Field(gt=0, le=0.1)] = 0.25e-3
-    """The same for Fig. S5, which has a whole map of energy grids for each wire."""
 
 
 class Config(_Section):

@@ -160,7 +160,6 @@ def test_conductances_are_the_simulated_wires(figure, y, drawn, evaluation, conf
                 B=data["B"].to_numpy(),
                 bias=data["bias"].to_numpy() if y == "bias" else 0.0,
                 temperature=config.dataset.temperature,
-                energy_spacing=config.figures.energy_spacing,
             ).squeeze()
             for name in CONDUCTANCES:
                 here = data[name][i, row].transpose("B", y)
@@ -298,10 +297,10 @@ def test_the_pristine_transition_is_where_zeeman_meets_mu_and_gamma(drawn):
 def test_the_pristine_conductances_are_simulated_and_mirror_symmetric(drawn, config):
     data = drawn("figure_S9")
     wire = dl.Nanowire(np.zeros(300), alpha=8.0)
-    B, spacing = data["B"].to_numpy(), config.figures.energy_spacing
+    B = data["B"].to_numpy()
     grids = {"b": (data["mu"], 0.0), "c": (0.0, data["bias"]), "d": (0.3, data["bias"])}
     for letter, (mu, bias) in grids.items():
-        G = dl.conductance(wire, mu, B, bias, energy_spacing=spacing).squeeze()
+        G = dl.conductance(wire, mu, B, bias).squeeze()
         for name in CONDUCTANCES:
             drawn_map = data[f"{name}_{letter}"]
             np.testing.assert_allclose(drawn_map, G[name].transpose(*drawn_map.dims), atol=1e-12)

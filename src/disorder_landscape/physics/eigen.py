@@ -46,7 +46,7 @@ def pivoted_cholesky(
             if pivots[i] > pivots[best]:
                 best = i
         if not pivots[best] > drop:
-            return k
+            return int(k)
         order[k] = best
         row = R[k]
         row[:] = N[best]
@@ -59,7 +59,7 @@ def pivoted_cholesky(
             row[j] *= root
             pivots[j] -= row[j] ** 2
         pivots[best] = -1.0
-    return n
+    return int(n)
 
 
 @nb.njit(cache=True, fastmath=SUMS, error_model="numpy")

@@ -123,7 +123,9 @@ def _chiral_green_function(
 
 
 @nb.njit(cache=True)
-def _chiral_self_energy(sigma: ComplexArray, hop: float, out: ComplexArray) -> None:  # pragma: no cover
+def _chiral_self_energy(
+    sigma: ComplexArray, hop: float, out: ComplexArray
+) -> None:  # pragma: no cover
     """Write the leads' Σ, shape (lead, charge, 2, 2) in units of t', as an 8×8 matrix in meV."""
     out[:] = 0.0
     for lead in range(2):
@@ -151,7 +153,12 @@ def _self_energy_terms(plan: _Plan, lead: ComplexArray) -> ComplexArray:  # prag
 
 @nb.njit(cache=True)
 def _load_lanes(
-    p: _Problem, plan: _Plan, s: FloatArray, w: int, mu: NDArray[np.int64], energy: NDArray[np.int64]
+    p: _Problem,
+    plan: _Plan,
+    s: FloatArray,
+    w: int,
+    mu: NDArray[np.int64],
+    energy: NDArray[np.int64],
 ) -> None:  # pragma: no cover
     for l in range(LANES):
         s[KINETIC * LANES + l] = p.kinetic[w, mu[l]]
@@ -235,7 +242,11 @@ def _average(
         plan.omega[at], isolated[at], lead[1], plan.window, hop, E, weight, z, up, down
     )
     kept = np.arange(started)
-    z, up, down = z[:started], chosen_vectors(up, kept, 2 * count), chosen_vectors(down, kept, 2 * count)
+    z, up, down = (
+        z[:started],
+        chosen_vectors(up, kept, 2 * count),
+        chosen_vectors(down, kept, 2 * count),
+    )
     levels, terms = level_products(E, weight), _self_energy_terms(plan, lead)
     v = polish_poles(z, up, down, levels, terms)
     paired, single = right_half(z, v, up, down)
@@ -270,7 +281,7 @@ def _average(
                 kernel = thermal_pole(z[j], -plan.bias[b], plan.kT)
                 for c in range(4):
                     out[b, c] += 2 * (kernel * r[j, 1, c]).real
-    return SAFETY * hop * _mismatch(plan, z, G[half:], green)
+    return float(SAFETY * hop * _mismatch(plan, z, G[half:], green))
 
 
 @nb.njit(cache=True, error_model="numpy")

@@ -18,6 +18,8 @@ LABELS = {
     "G_RR": ("local conductance dI_R/dV_R", "e^2/h"),
     "G_LR": ("nonlocal conductance -dI_L/dV_R", "e^2/h"),
     "G_RL": ("nonlocal conductance -dI_R/dV_L", "e^2/h"),
+    "error": ("estimated error of the conductances", "e^2/h"),
+    "energies": ("energies that the solver was asked for", "1"),
     "T_IV": ("topological visibility det r at zero energy", "1"),
     "components": ("disorder components c_1 ... c_n", "meV"),
     "alpha": ("spin-orbit coupling", "meV nm"),

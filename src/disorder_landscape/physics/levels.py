@@ -53,7 +53,12 @@ def to_chiral(M: FloatArray | ComplexArray) -> None:  # pragma: no cover
     for _ in range(2):  # MᵀT twice is TᵀMT
         for i in range(8):
             for end in range(2):
-                m0, m1, m2, m3 = M[i, 4 * end], M[i, 4 * end + 1], M[i, 4 * end + 2], M[i, 4 * end + 3]
+                m0, m1, m2, m3 = (
+                    M[i, 4 * end],
+                    M[i, 4 * end + 1],
+                    M[i, 4 * end + 2],
+                    M[i, 4 * end + 3],
+                )
                 row[2 * end], row[2 * end + 1] = half * (m1 + m2), half * (m0 - m3)
                 row[4 + 2 * end], row[5 + 2 * end] = half * (m1 - m2), half * (m0 + m3)
             for j in range(8):
@@ -232,7 +237,7 @@ def wire_levels(
                 weight[j, c] /= E[j]
     if small > 0:
         _complete_zero_modes(omega[0], G[0], E[:rank], weight)
-    return rank
+    return int(rank)
 
 
 @nb.njit(cache=True, error_model="numpy")

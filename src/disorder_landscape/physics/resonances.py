@@ -3,10 +3,11 @@
 G(z) = T(z)⁻¹, T(z) = G_iso(z)⁻¹ − Σ(z), both sides 8×8: G_iso from the levels (`levels`), Σ of the
 leads a cubic in the energy. At a pole T v = 0, and G ≈ v vᵀ/(ω − z) if vᵀT'v = 1.
 
-Start: the levels ±E near the window with the self-energy that the leads and the far levels make of
-them, H = E + UᵀΣ̃U, Σ̃ = Σ(1 − G_bg Σ)⁻¹ at one energy, its strongest mixings rotated away (`jacobi`).
-Then inverse iteration with the symmetric Rayleigh functional on T itself (Schwetlick and Schreiber
-2012), which converges cubically: no expansion in the coupling is left. LANES poles go together.
+In the space of the levels this is H(z) = E + UᵀΣ(z)U, with the levels ±E and what the ends see of
+them, U. Start: the levels near the window with the self-energy that the leads and the far levels make
+of them, UᵀΣ(1 − G_bg Σ)⁻¹U at one energy, its strongest mixings rotated away (`jacobi`). Then
+inverse iteration with the symmetric Rayleigh quotient on H(z), all poles together, which converges
+cubically: no expansion in the coupling is left.
 
 Particle–hole symmetry, G(−ω*) = −C G(ω)* C, pairs a pole z, v with −z*, C v*: only those with
 Re z ≥ 0 are worked out.
@@ -65,8 +66,8 @@ def start_poles(
 ) -> tuple[int, int]:  # pragma: no cover
     """Write approximate poles in the right half plane and close to the imaginary axis.
 
-    With their vectors, see `polish_poles`, which are zero on entry and of room for z, from G and Σ at one energy ω.
-    Returns how many there are, and how many in both half planes.
+    With their vectors, see `polish_poles`, for which there is as much room as for z; from G and Σ
+    at one energy ω. Returns how many there are, and how many in both half planes.
     """
     near = np.empty(E.size, dtype=np.int64)
     count = 0
@@ -299,7 +300,9 @@ def _multiply(x: FloatArray, r: FloatArray) -> None:  # pragma: no cover
 
 
 @nb.njit(cache=True)
-def _end_vectors(up: FloatArray, down: FloatArray, levels: Levels) -> ComplexArray:  # pragma: no cover
+def _end_vectors(
+    up: FloatArray, down: FloatArray, levels: Levels
+) -> ComplexArray:  # pragma: no cover
     """Return U x, shape (pole, 8): what the ends see of vectors over the levels +E and −E."""
     count = up.shape[0] // 2
     total, difference = _sum_and_difference(up, down, 1.0)
@@ -418,7 +421,9 @@ def _one_pass(
 
 
 @nb.njit(cache=True)
-def chosen_vectors(x: FloatArray, chosen: NDArray[np.int64], n: int) -> FloatArray:  # pragma: no cover
+def chosen_vectors(
+    x: FloatArray, chosen: NDArray[np.int64], n: int
+) -> FloatArray:  # pragma: no cover
     """Return the vectors `chosen` of n."""
     count = chosen.size
     out = np.empty((2 * count, x.shape[1]))

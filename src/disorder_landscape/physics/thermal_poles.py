@@ -32,7 +32,9 @@ def trigamma(x: float, y: float) -> complex:  # pragma: no cover
     norm = 1.0 / (x * x + y * y)
     i = complex(x * norm, -y * norm)
     i2 = i * i
-    series = 1 / 6 - i2 * (1 / 30 - i2 * (1 / 42 - i2 * (1 / 30 - i2 * (5 / 66 - i2 * (691 / 2730)))))
+    series = 1 / 6 - i2 * (
+        1 / 30 - i2 * (1 / 42 - i2 * (1 / 30 - i2 * (5 / 66 - i2 * (691 / 2730))))
+    )
     return complex(re, im) + i + i2 * (0.5 + i * series)
 
 

@@ -3,19 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from disorder_landscape.arguments import grid_in, number_in
+from disorder_landscape.physics.finite_temperature import TOLERANCE, thermal_conductance
 from disorder_landscape.physics.labels import CONDUCTANCES, labelled
 from disorder_landscape.physics.parameters import BOLTZMANN, TEMPERATURE, FloatArray, Nanowire
+from disorder_landscape.physics.quadrature import thermal_quadrature
 from disorder_landscape.physics.solvers import solver_functions, wires_of
 from disorder_landscape.physics.thermal import ENERGY_SPACING, thermal_grid
+from disorder_landscape.physics.thermal_poles import REACH
 
 BLOCK_ENERGIES = {"fast": 2**18, "kwant": 2**8}
 """Energies that each solver is given at a time: about 16 MB and one second."""
+BLOCK_SETS = 2**12
+"""Sets (wire, μ, B) that are averaged exactly at a time: one or two seconds."""
+BELOW_GAP = 0.98
+"""Part of the gap up to which the thermal window is taken as rational in energy."""
 
 Progress = Callable[[int, int], None]
 
@@ -27,7 +35,7 @@ def conductance(
     bias: ArrayLike = 0.0,
     temperature: float = TEMPERATURE,
     solver: str = "fast",
-    energy_spacing: float = ENERGY_SPACING,
+    energy_spacing: float | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Return the conductance matrix of a wire, or of several of equal length (S-I).
@@ -41,16 +49,18 @@ def conductance(
         In K; 0 gives the bare conductance at ω = bias.
     solver : {"fast", "kwant"}
         The real recursion, or Kwant, the reference, thousands of times slower.
-    energy_spacing : float
-        Largest spacing in meV, at most kT, of the energies that a finite temperature averages over.
+    energy_spacing : float, optional
+        Average over a grid of energies of at most this spacing in meV, at most kT, as the paper
+        does, instead of exactly. Kwant always does, by default at 0.5 µeV.
     progress : callable, optional
-        Told how many energies have just been solved, and how many there are in all.
+        Told how many pairs (μ, B) have just been done, and how many there are in all.
 
     Returns
     -------
     xarray.Dataset
         G_LL, G_RR, G_LR, G_RL in e²/h, dims (mu, B, bias), with a leading dim realization for
-        several wires.
+        several wires. An exact average also has `error`, the estimated error in e²/h, and
+        `energies`, how many the solver was asked for, dims (mu, B).
 
     Raises
     ------
@@ -66,24 +76,69 @@ def conductance(
         "bias": grid_in("bias", bias, -delta0 * (1 - 1e-6), delta0 * (1 - 1e-6), "meV"),
     }
     temperature = number_in("temperature", temperature, 0.0, 10.0, "K")
-    if temperature > 0:
-        kT = BOLTZMANN * temperature  # a coarser grid would miss the kernel altogether
-        energy_spacing = number_in("energy_spacing", energy_spacing, 1e-7, kT, "meV")
-        omega, weights = thermal_grid(grids["bias"], temperature, delta0, energy_spacing)
-    else:
-        omega, weights = _bare_grid(grids["bias"])
     bare = solver_functions(solver)[0]
-    G = np.empty((len(wires), grids["mu"].size, grids["B"].size, grids["bias"].size, 4))
     shape = (len(wires), grids["mu"].size, grids["B"].size)
-    for some, points, fields in _blocks(shape, BLOCK_ENERGIES[solver] // omega.size):
-        G0 = bare(wires[some], grids["mu"][points], grids["B"][fields], omega)
-        G[some, points, fields] = np.einsum("wmbkse,vks->wmbve", G0, weights)
-        if progress is not None:
-            progress(G0[..., 0, 0].size, np.prod(shape, dtype=int) * omega.size)
+    told = progress if progress is not None else lambda done, total: None
+    exact = temperature > 0 and solver == "fast" and energy_spacing is None
+    G = np.empty((*shape, grids["bias"].size, 4))
+    error, energies = np.zeros(shape), np.zeros(shape, dtype=np.int64)
+    if exact:
+        for some, points, fields in _blocks(shape, BLOCK_SETS):
+            at = some, points, fields
+            G[at], error[at], energies[at] = exact_average(
+                wires[some], grids["mu"][points], grids["B"][fields], grids["bias"], temperature
+            )
+            told(error[at].size, error.size)
+    else:
+        if temperature > 0:
+            kT = BOLTZMANN * temperature  # a coarser grid would miss the kernel altogether
+            spacing = min(ENERGY_SPACING, kT) if energy_spacing is None else energy_spacing
+            spacing = number_in("energy_spacing", spacing, 1e-7, kT, "meV")
+            omega, weights = thermal_grid(grids["bias"], temperature, delta0, spacing)
+        else:
+            omega, weights = _bare_grid(grids["bias"])
+        for some, points, fields in _blocks(shape, BLOCK_ENERGIES[solver] // omega.size):
+            G0 = bare(wires[some], grids["mu"][points], grids["B"][fields], omega)
+            G[some, points, fields] = np.einsum("wmbkse,vks->wmbve", G0, weights)
+            told(G0[..., 0, 0, 0].size, error.size)
+    data: dict[str, Any]
     data = {name: (("realization", *grids), G[..., i]) for i, name in enumerate(CONDUCTANCES)}
+    if exact:
+        data["error"] = (("realization", "mu", "B"), error)
+        data["energies"] = (("realization", "mu", "B"), energies)
     attrs = {"temperature": temperature, "solver": solver}
     dataset = labelled(xr.Dataset(data, coords=grids, attrs=attrs))
     return dataset.isel(realization=0) if isinstance(wire, Nanowire) else dataset
+
+
+def exact_average(
+    wires: Sequence[Nanowire],
+    mu: FloatArray,
+    B: FloatArray,
+    bias: FloatArray,
+    temperature: float,
+) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
+    """Return the thermal average, its estimated error and the number of energies it took.
+
+    Rational in energy and in closed form where the thermal window stays below the gap
+    (`finite_temperature`); by adaptive quadrature (`quadrature`) where it does not, and for the
+    rare set of which no rational model within the tolerance is found.
+
+    Returns
+    -------
+    G : array, shape (wire, mu, B, bias, 4)
+        G_LL, G_RR, G_LR, G_RL in e²/h.
+    error, energies : array, shape (wire, mu, B)
+    """
+    window = abs(bias).max() + REACH * BOLTZMANN * temperature
+    if window > BELOW_GAP * min(w.delta0 for w in wires):
+        return thermal_quadrature(wires, mu, B, bias, temperature)
+    G, error, energies = thermal_conductance(wires, mu, B, bias, temperature)
+    for w, m, f in np.argwhere(~(error <= TOLERANCE)):
+        one = thermal_quadrature([wires[w]], mu[m : m + 1], B[f : f + 1], bias, temperature)
+        G[w, m, f], error[w, m, f] = one.conductance[0, 0, 0], one.error[0, 0, 0]
+        energies[w, m, f] += one.energies[0, 0, 0]
+    return G, error, energies
 
 
 def _bare_grid(bias: FloatArray) -> tuple[FloatArray, FloatArray]:
