@@ -10,6 +10,8 @@ polynomial through its values at ±ω_k = ±W sin(π(k + ½)/2M), Chebyshev's no
 
 from __future__ import annotations
 
+from functools import cache
+
 import numba as nb
 import numpy as np
 
@@ -51,6 +53,13 @@ def chebyshev_nodes(window: float, nodes: int) -> FloatArray:
     return np.asarray(window * np.sin(np.pi * (np.arange(nodes) + 0.5) / (2 * nodes)))
 
 
+@cache
+def _kernel_rule() -> tuple[FloatArray, FloatArray]:
+    """Return Gauss nodes x and their share of the kernel at ω = V + kT x."""
+    x, dx = np.polynomial.legendre.leggauss(240)
+    return 32 * x, np.cosh(16 * x) ** -2 * dx
+
+
 def thermal_node_weights(
     bias: FloatArray, kT: float, window: float, nodes: int
 ) -> tuple[FloatArray, FloatArray]:
@@ -58,8 +67,7 @@ def thermal_node_weights(
 
     They average the polynomial through all 2·nodes values, and leave a constant as it is.
     """
-    x, dx = np.polynomial.legendre.leggauss(240)
-    x, dx = 32 * x, np.cosh(16 * x) ** -2 * dx  # the kernel at ω = V + kT x
+    x, dx = _kernel_rule()
     u = np.clip((bias[:, None] + kT * x) / window, -1, 1)
     T = np.polynomial.chebyshev.chebvander(u, 2 * nodes - 1)
     moments = np.einsum("x,vxn->vn", dx / dx.sum(), T)
