@@ -42,11 +42,11 @@ WIDE = np.linspace(0.0, 0.6, 64), np.linspace(0.1, 0.8, 4)
 MEMORY = tuple(DatasetConfig(realizations=n, sites=100) for n in (50, 200))
 """Datasets that are generated to see the memory it takes."""
 
-Progress = Callable[[int, int], None]
-"""Told how many turns are done and how many there are, the first, which compiles, included."""
+Progress = Callable[[int], object]
+"""Told 1 after each turn; the first, which compiles and is not counted, is one more."""
 
 
-def measure(repeats: int, told: Progress = lambda done, total: None) -> dict[str, Any]:
+def measure(repeats: int, told: Progress = lambda done: None) -> dict[str, Any]:
     """Measure everything, each time so often; return what `bench.json` holds.
 
     What is compared is measured in turn, so that a change of the core's clock meets all alike, and
@@ -57,7 +57,10 @@ def measure(repeats: int, told: Progress = lambda done, total: None) -> dict[str
         name: [_random_wire(rng, of.components, of.sites) for _ in range(WIRES[name])]
         for name, of in DATASETS.items()
     }
-    long = {sites: _random_wire(rng, 5, sites) for sites in LENGTHS}
+    long = {  # as much work at every length
+        sites: [_random_wire(rng, 5, sites) for _ in range(max(LENGTHS) // sites)]
+        for sites in LENGTHS
+    }
     grids = {name: (config.mu, config.B) for name, config in DATASETS.items()}
     five, grid = wires["5 components"], grids["5 components"]
     few = grid[0][2::5], grid[1][2::5]
@@ -72,17 +75,15 @@ def measure(repeats: int, told: Progress = lambda done, total: None) -> dict[str
         "per set, threads": stopwatches.sets(five, *grid, threads),
         "per set, 10 components": stopwatches.sets(wires["10 components"], *grids["10 components"]),
         "per set, energy grid": stopwatches.energy_grid(five[0], *grid, PAPER_SPACING),
-        **{f"per energy, {n} sites": stopwatches.bare(wire, *grid) for n, wire in long.items()},
-        **{f"per set, {n} sites": stopwatches.sets([wire], *few) for n, wire in long.items()},
+        **{f"per energy, {n} sites": stopwatches.bare(some[0], *grid) for n, some in long.items()},
+        **{f"per set, {n} sites": stopwatches.sets(some, *few) for n, some in long.items()},
     }
     with threadpool_limits(1), stopwatches.numba_threads(1):
         averaged = {
             name: exact_average(wires[name], *grids[name], BIASES, TEMPERATURE)[1:]
             for name in DATASETS
         }
-        needed = {
-            n: exact_average([wire], *few, BIASES, TEMPERATURE)[2] for n, wire in long.items()
-        }
+        needed = {n: exact_average(some, *few, BIASES, TEMPERATURE)[2] for n, some in long.items()}
         seconds = _in_turn(watches, repeats, told)
     omega, _ = thermal_grid(BIASES, TEMPERATURE, five[0].delta0, PAPER_SPACING)
     times = {name: float(np.median(of)) for name, of in seconds.items()}
@@ -118,7 +119,7 @@ def measure(repeats: int, told: Progress = lambda done, total: None) -> dict[str
         "sites": list(LENGTHS),
         "energies per set": [float(energies.mean()) for energies in needed.values()],
         "exponent": {
-            name: _exponent([times[f"{name}, {n} sites"] for n in LENGTHS])
+            name: _exponents([times[f"{name}, {n} sites"] for n in LENGTHS])
             for name in ("per energy", "per set")
         },
         "peak MiB": {
@@ -136,7 +137,7 @@ def _in_turn(
             taken = watch()
             if turn > 0:  # the first compiles, or reads what has been compiled
                 seconds[name].append(taken)
-        told(turn + 1, repeats + 1)
+        told(1)
     return seconds
 
 
@@ -153,6 +154,13 @@ def _core_hours(config: DatasetConfig, seconds: float) -> float:
     return config.realizations * config.mu_points * config.B_points * seconds / 3600
 
 
-def _exponent(times: list[float]) -> float:
-    """Return the slope of a line through the logarithms of times and LENGTHS."""
-    return float(np.polyfit(np.log(LENGTHS), np.log(times), 1)[0])
+def _exponents(times: list[float]) -> dict[str, float]:
+    """Return the slopes of lines through the logarithms of times and LENGTHS: all, the last two.
+
+    What does not grow with the length, the ends and the leads, counts in short wires only.
+    """
+    x, y = np.log(LENGTHS), np.log(times)
+    return {
+        "all": float(np.polyfit(x, y, 1)[0]),
+        "longest": float(np.polyfit(x[-2:], y[-2:], 1)[0]),
+    }

@@ -225,11 +225,6 @@ def bench(
 
     from disorder_landscape.bench_report import report
 
-    with tqdm(unit=" turns", desc="bench") as bar:
-
-        def progress(done: int, in_all: int) -> None:
-            bar.total = in_all
-            bar.update(done - bar.n)
-
-        lines = report(repeats, output, progress)
+    with tqdm(total=repeats + 1, unit=" turns", desc="bench") as bar:
+        lines = report(repeats, output, bar.update)
     print("\n".join([*lines, f"wrote {output}/bench.txt, bench.json and bench.png"]))
