@@ -40,9 +40,8 @@ def _plot_lengths(axes: Any, found: Mapping[str, Any]) -> None:
         times = 1e6 * np.array([found["medians"][f"{name}, {n} sites"] for n in sites])
         label = f"{name}, exponent {found['exponent'][name]['all']:.2f}"
         (drawn,) = axes.loglog(sites, times, marker, label=label)
-        axes.loglog(
-            sites, times[1] * sites / sites[1], "-", color=drawn.get_color(), lw=0.8, zorder=1
-        )
+        slope_one = times[1] * sites / sites[1]
+        axes.loglog(sites, slope_one, "-", color=drawn.get_color(), lw=0.8, zorder=1)
     axes.set_xticks(sites, [str(n) for n in sites])
     axes.minorticks_off()
     axes.set(xlabel="sites", ylabel="time on one core (µs)", title="Lines: slope 1")
@@ -57,8 +56,5 @@ def _plot_ratios(axes: Any, ratios: Mapping[str, float]) -> None:
     axes.axvline(BOUND, color="k", lw=0.8, ls="--")
     axes.invert_yaxis()
     axes.set(xscale="log", xlim=(10, 4 * max(*values, BOUND)))
-    axes.set(
-        xlabel="Kwant / fast, time on one core",
-        title=f"Dashed: {BOUND:,}, the least that was asked for",
-    )
+    axes.set(xlabel="Kwant / fast, time on one core", title=f"Dashed: {BOUND:,}")
     axes.spines[["top", "right"]].set_visible(False)
