@@ -69,13 +69,13 @@ def table(found: dict[str, Any]) -> Iterator[str]:
         of = hours[name]
         yield f"{what:38s}{of['fast']:10,.2f}{of['Kwant']:10,.0f}{of['paper']:10,.0f}"
     yield ""
-    yield f"{'sites':20s}" + "".join(f"{n:12d}" for n in found["sites"]) + "    exponent, 2 longest"
+    yield f"{'sites':20s}" + "".join(f"{n:15d}" for n in found["sites"]) + "    exponent, 2 longest"
     for name in ("per energy", "per set"):
         of = [1e6 * times[f"{name}, {n} sites"] for n in found["sites"]]
         slope = found["exponent"][name]
-        values = "".join(f"{value:12,.2f}" for value in of)
+        values = "".join(f"{value:15,.2f}" for value in of)
         yield f"{name + ' (us)':20s}{values}{slope['all']:12.2f}{slope['longest']:11.2f}"
-    yield f"{'energies per set':20s}" + "".join(f"{n:12,.1f}" for n in found["energies per set"])
+    yield f"{'energies per set':20s}" + "".join(f"{n:15,.1f}" for n in found["energies per set"])
     yield ""
     what = "gradient, per bias, dataset grid"
     yield line(what, 1e6 * times[what], "us", 3)
