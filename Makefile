@@ -57,7 +57,7 @@ train: generate ## train the network on it
 evaluate: train ## score the network on its test realizations
 	$(LANDSCAPE) evaluate --config $(CONFIG)
 
-bench: $(READY) ## time the fast solver against Kwant
+bench: $(READY) ## time the solvers, table and plot into build/bench (a few minutes)
 	$(LANDSCAPE) bench
 
 test: $(READY) ## run the tests
