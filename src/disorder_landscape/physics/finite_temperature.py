@@ -46,6 +46,7 @@ from disorder_landscape.physics.resonances import (
 from disorder_landscape.physics.thermal_poles import (
     REACH,
     chebyshev_nodes,
+    interpolation_weights,
     thermal_node_weights,
     thermal_pole,
 )
@@ -60,6 +61,8 @@ NODES = (12, 13, 16, 20, 28, 36)
 """Numbers of nodes that are tried in turn."""
 TOLERANCE = 1e-4
 """Estimated error in e²/h above which nodes are added."""
+ROUGHNESS = 3.0
+"""Estimated error over the smooth part's largest mismatch at the checks."""
 FLOOR = 5e-6
 """Error in e²/h that no check sees: of the kernel's cut and of the smooth part's interpolation."""
 SAFETY = 100.0
@@ -76,6 +79,7 @@ class _Plan(NamedTuple):
     cubic: FloatArray  # (CUBIC, CUBIC), inverse of their Vandermonde matrix
     plus: FloatArray  # (bias, node), weights of the values at ω_k
     minus: FloatArray  # (bias, node), at −ω_k
+    at_checks: FloatArray  # (CHECKS, 2, 2 · node), of both for the value at ±(a check)
     bias: FloatArray  # (bias,)
     kT: float
     slopes: FloatArray  # (wire, 2, node + CHECKS): of the normal and anomalous terms
@@ -90,6 +94,7 @@ def _plan(wires: Sequence[Nanowire], bias: FloatArray, kT: float, nodes: int) ->
     omega = np.concatenate([chebyshev_nodes(window, nodes), window * np.sin(theta)])
     picks = ((np.arange(CUBIC) + 0.5) * nodes / CUBIC).astype(np.int64)
     plus, minus = thermal_node_weights(bias, kT, window, nodes)
+    checks = np.stack([omega[nodes:], -omega[nodes:]], axis=1).reshape(-1) / window
     slopes = np.empty((len(wires), 2, omega.size))
     hop = np.array([np.hypot(w.hopping, w.spin_orbit_hopping) for w in wires])
     for wire, slope, t in zip(wires, slopes, hop, strict=True):
@@ -104,6 +109,7 @@ def _plan(wires: Sequence[Nanowire], bias: FloatArray, kT: float, nodes: int) ->
         cubic=np.linalg.inv(np.vander(omega[picks], CUBIC, increasing=True)),
         plus=plus,
         minus=minus,
+        at_checks=interpolation_weights(checks, nodes).reshape(CHECKS, 2, 2 * nodes),
         bias=bias,
         kT=kT,
         slopes=slopes,
@@ -177,7 +183,7 @@ class _Solved(NamedTuple):
     isolated: FloatArray  # (CHUNK, node, 8, 8)
     slope: FloatArray  # (CHUNK, node, 8, 8)
     green: ComplexArray  # (CHUNK, node + CHECKS, 8, 8), leads attached
-    bare: FloatArray  # (CHUNK, node, 2, 4), conductances at ±ω
+    bare: FloatArray  # (CHUNK, node + CHECKS, 2, 4), conductances at ±ω
     growth: FloatArray  # (CHUNK,)
 
 
@@ -210,8 +216,8 @@ def _solve(
                 if not growth <= data.growth[i]:  # so that NaN spreads
                     data.growth[i] = growth
                 _chiral_green_function(re, im, l, plan.hop[w], data.green[i, e])
+                lane_conductances(re, im, sigma[e], l, data.bare[i, e])
                 if not checking:
-                    lane_conductances(re, im, sigma[e], l, data.bare[i, e])
                     isolated_end_green_function(
                         s, l, plan.hop[w], data.isolated[i, e], data.slope[i, e]
                     )
@@ -266,15 +272,17 @@ def _average(
     r = np.empty((half, 2, 4), dtype=np.complex128)
     conductance_residues(z, v, G[:half], terms, r)
     out[:] = 0.0
-    poles_at = np.empty(4)
+    smooth, poles_at = np.empty((2 * m, 4)), np.empty(4)
     for k in range(m):
         for sign in range(2):
             w = plan.omega[k] if sign == 0 else -plan.omega[k]
             pole_sum(w, z, r, paired, poles_at)
+            for c in range(4):
+                smooth[sign * m + k, c] = bare[k, sign, c] - poles_at[c]
             for b in range(plan.bias.size):
                 q = plan.plus[b, k] if sign == 0 else plan.minus[b, k]
                 for c in range(4):
-                    out[b, c] += q * (bare[k, sign, c] - poles_at[c])
+                    out[b, c] += q * smooth[sign * m + k, c]
     for j in range(half):
         for b in range(plan.bias.size):
             kernel = thermal_pole(z[j], plan.bias[b], plan.kT)
@@ -284,7 +292,42 @@ def _average(
                 kernel = thermal_pole(z[j], -plan.bias[b], plan.kT)
                 for c in range(4):
                     out[b, c] += 2 * (kernel * r[j, 1, c]).real
-    return float(SAFETY * hop * _mismatch(plan, z, G[half:], green))
+    of_model = SAFETY * hop * _mismatch(plan, z, G[half:], green)
+    rough = ROUGHNESS * _roughness(plan, z, r, paired, bare, smooth)
+    return float(of_model if of_model > rough else rough)
+
+
+@nb.njit(cache=True, error_model="numpy")
+def _roughness(
+    plan: _Plan,
+    z: ComplexArray,
+    r: ComplexArray,
+    paired: int,
+    bare: FloatArray,
+    smooth: FloatArray,
+) -> float:  # pragma: no cover
+    """Return how far the smooth part's polynomial is off at the checks, in e²/h.
+
+    A pole that was lost, or counted twice, leaves its peak in what should be smooth.
+    """
+    m = plan.nodes
+    worst = 0.0
+    poles_at = np.empty(4)
+    for k in range(CHECKS):
+        nearest = plan.kT
+        for n in range(z.size):
+            nearest = min(nearest, abs(plan.omega[m + k] - z[n]))
+        for sign in range(2):
+            w = plan.omega[m + k] if sign == 0 else -plan.omega[m + k]
+            pole_sum(w, z, r, paired, poles_at)
+            for c in range(4):
+                value = poles_at[c] - bare[m + k, sign, c]
+                for n in range(2 * m):
+                    value += plan.at_checks[k, sign, n] * smooth[n, c]
+                value = abs(value) * (nearest / plan.kT) ** 2
+                if not value <= worst:
+                    worst = value
+    return worst
 
 
 @nb.njit(cache=True, error_model="numpy")
@@ -330,7 +373,7 @@ def _kernel(
             np.empty((CHUNK, m, 8, 8)),
             np.empty((CHUNK, m, 8, 8)),
             np.empty((CHUNK, m + CHECKS, 8, 8), dtype=np.complex128),
-            np.empty((CHUNK, m, 2, 4)),
+            np.empty((CHUNK, m + CHECKS, 2, 4)),
             np.empty(CHUNK),
         )
         mu = np.arange(first, last)

@@ -14,9 +14,9 @@ Layout: one buffer holds entry k of lane l at s[k·LANES + l], every entry of ev
 scalar in the loop over lanes, the innermost: it then compiles to full-width vector instructions.
 A lane is one (μ, ω) of a given wire and field.
 
-What bounds it: 281 multiplications and additions and 4 divisions per site, every operand in the first
-cache (10 kB of state), so 84,000 operations in the 1.7 µs of a 300-site wire: close to what the two
-256-bit multiply-add units of a Zen 4 core can do. The slopes add 611 per site.
+What bounds it: 281 multiplications and additions and 4 divisions per site, every operand in the
+first cache (10 kB of state): 84,000 operations in the 1.7 µs of a 300-site wire, close to what the
+two 256-bit multiply-add units of a Zen 4 core can do. The slopes add 611 per site.
 
 Rounding: D is factored as LΔLᵀ, never inverted for E and C. If a level of the eliminated piece lies
 at ω, D⁻¹ is as large as some g ≫ 1, the next D and C too, and E − C X Cᵀ with an explicit X = D⁻¹

@@ -71,9 +71,19 @@ def thermal_node_weights(
     u = np.clip((bias[:, None] + kT * x) / window, -1, 1)
     T = np.polynomial.chebyshev.chebvander(u, 2 * nodes - 1)
     moments = np.einsum("x,vxn->vn", dx / dx.sum(), T)
-    at = chebyshev_nodes(1.0, nodes)
-    both = np.concatenate([at, -at])
-    series = np.polynomial.chebyshev.chebvander(both, 2 * nodes - 1) / nodes
-    series[:, 0] /= 2
-    weights = moments @ series.T
+    weights = moments @ _chebyshev_series(nodes)
     return weights[:, :nodes], weights[:, nodes:]
+
+
+def interpolation_weights(u: FloatArray, nodes: int) -> FloatArray:
+    """Return the weights, shape (u, 2 · node), of the values at ω_k, then −ω_k, for those at uW."""
+    T = np.polynomial.chebyshev.chebvander(u, 2 * nodes - 1)
+    return np.asarray(T @ _chebyshev_series(nodes))
+
+
+def _chebyshev_series(nodes: int) -> FloatArray:
+    """Return what turns values at ω_k, then −ω_k, into Chebyshev coefficients: (2 · node)²."""
+    at = chebyshev_nodes(1.0, nodes)
+    series = np.polynomial.chebyshev.chebvander(np.concatenate([at, -at]), 2 * nodes - 1) / nodes
+    series[:, 0] /= 2
+    return np.asarray(series.T)
