@@ -61,11 +61,11 @@ NODES = (12, 13, 16, 20, 28, 36)
 """Numbers of nodes that are tried in turn."""
 TOLERANCE = 1e-4
 """Estimated error in e²/h above which nodes are added."""
-ROUGHNESS = 3.0
+ROUGHNESS = 10.0
 """Estimated error over the smooth part's largest mismatch at the checks."""
 FLOOR = 5e-6
 """Error in e²/h that no check sees: of the kernel's cut and of the smooth part's interpolation."""
-SAFETY = 100.0
+SAFETY = 300.0
 """Estimated error over the model's largest mismatch, times t', at the checks."""
 
 
