@@ -35,8 +35,6 @@ from disorder_landscape.physics.hamiltonian import ComplexArray
 from disorder_landscape.physics.parameters import FloatArray
 from disorder_landscape.physics.recursion import C_AT, D_AT, E_AT, LANES, SLOPES
 
-DROP = 1e-12
-"""Basis vectors of which less than this (squared, relative) is new are left out."""
 ZERO_MODE = 3e-5
 """Below this energy in meV Eb is too small to tell b; completeness does."""
 

@@ -3,11 +3,11 @@
 G(z) = T(z)⁻¹, T(z) = G_iso(z)⁻¹ − Σ(z), both sides 8×8: G_iso from the levels (`levels`), Σ of the
 leads a cubic in the energy. At a pole T v = 0, and G ≈ v vᵀ/(ω − z) if vᵀT'v = 1.
 
-In the space of the levels this is H(z) = E + UᵀΣ(z)U, with the levels ±E and what the ends see of
-them, U. Start: the levels near the window with the self-energy that the leads and the far levels make
-of them, UᵀΣ(1 − G_bg Σ)⁻¹U at one energy, its strongest mixings rotated away (`jacobi`). Then
-inverse iteration with the symmetric Rayleigh quotient on H(z), all poles together, which converges
-cubically: no expansion in the coupling is left.
+In the space of the levels this is H(z) = E + UᵀΣ(z)U, with the levels ±E and what the ends see
+of them, U. Start: the levels near the window with the self-energy that the leads and the far levels
+make of them, UᵀΣ(1 − G_bg Σ)⁻¹U at one energy, its strongest mixings rotated away (`jacobi`).
+Then inverse iteration with the symmetric Rayleigh quotient on H(z), all poles together, which
+converges cubically: no expansion in the coupling is left.
 
 Particle–hole symmetry, G(−ω*) = −C G(ω)* C, pairs a pole z, v with −z*, C v*: only those with
 Re z ≥ 0 are worked out.
@@ -26,7 +26,7 @@ from disorder_landscape.physics.jacobi import diagonalise_nearly
 from disorder_landscape.physics.levels import invert
 from disorder_landscape.physics.parameters import FloatArray
 
-POLES = 16
+POLES = 32
 """Poles that are polished together."""
 FASTMATH = {"contract", "nsz", "arcp", "reassoc"}
 UPPER = 36
@@ -45,8 +45,8 @@ CENTRE = 1e-3
 """Starting values this near the imaginary axis (meV) may end on it, from either side."""
 PASSES = 12
 """Most iterations per pole."""
-CONVERGED = 1e-5
-"""A pole that moves by less than this part of its width has converged: cubically, 1e-14 is left."""
+CONVERGED = 3e-4
+"""A pole that moves by less than this part of its width has converged: cubically, 1e-11 is left."""
 EQUAL = 1e-4
 """Poles nearer than this part of their width are one, of two vectors."""
 
@@ -515,7 +515,8 @@ def right_half(
             kept = 1.0
             for m in range(found):
                 at = order[m]
-                if abs(z[at] - z[k]) < EQUAL * (abs(z[k].imag) + FAINT):
+                faint = abs(z[k].imag) < FAINT  # it may stand twice: it carries nothing
+                if not faint and abs(z[at] - z[k]) < EQUAL * abs(z[k].imag):
                     kept = min(kept, _orthogonalise(k, at, v, up, down))
             if kept > 0.1:
                 order[found] = k
