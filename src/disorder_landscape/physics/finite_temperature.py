@@ -56,7 +56,7 @@ CHUNK = 4
 """Chemical potentials of one task: with CHECKS energies each they fill the lanes."""
 CHECKS = 4
 """Energies at which the model is compared with the solver."""
-NODES = (12, 13, 16, 18, 14, 20, 11)
+NODES = (12, 13, 16, 20, 28, 36)
 """Numbers of nodes that are tried in turn."""
 TOLERANCE = 1e-4
 """Estimated error in e²/h above which nodes are added."""
