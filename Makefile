@@ -25,7 +25,7 @@ COMPILE := .venv/bin/uv pip compile --universal --python-version 3.11 --generate
 
 STARTED := $(shell date +%s)
 
-.PHONY: help setup generate train evaluate figures $(FIGURES) bench test lint lock clean
+.PHONY: help setup generate train evaluate figures $(FIGURES) bench accuracy test lint lock clean
 .SUFFIXES:
 # One after the other: each command uses all cores by itself.
 .NOTPARALLEL:
@@ -59,6 +59,9 @@ evaluate: train ## score the network on its test realizations
 
 bench: $(READY) ## time the solvers, table and plot into build/bench (a few minutes)
 	$(LANDSCAPE) bench
+
+accuracy: $(READY) ## compare 2000 thermal averages with the integral by brute force
+	$(VENV_PYTHON) claims/accuracy.py
 
 test: $(READY) ## run the tests
 	$(VENV_PYTHON) -m pytest -n 2
