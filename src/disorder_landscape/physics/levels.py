@@ -255,8 +255,13 @@ def _complete_zero_modes(
         if E[j] < ZERO_MODE:
             p = np.argmax(np.diag(rest))
             root = np.sqrt(max(rest[p, p], 0.0))
+            along = 0.0  # the sign of b relative to a is that of the E b that was found
             for i in range(4):
-                weight[j, 4 + i] = rest[i, p] / root if root > 0 else 0.0
+                along += weight[j, 4 + i] * rest[i, p]
+            if along < 0.0:
+                root = -root
+            for i in range(4):
+                weight[j, 4 + i] = rest[i, p] / root if root != 0.0 else 0.0
             for i in range(4):
                 for k in range(4):
                     rest[i, k] -= weight[j, 4 + i] * weight[j, 4 + k]

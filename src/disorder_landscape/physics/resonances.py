@@ -43,6 +43,8 @@ FAINT = 1e-9
 """Widths below this (meV) carry no conductance and need no digits."""
 CENTRE = 1e-3
 """Starting values this near the imaginary axis (meV) may end on it, from either side."""
+ASIDE = 0.1
+"""Starting values on the axis are moved off it by this part of their width, to either side."""
 PASSES = 12
 """Most iterations per pole."""
 CONVERGED = 3e-4
@@ -102,10 +104,14 @@ def start_poles(
         re[k, k] += energy[k]
     rows_re, rows_im = np.eye(n), np.zeros((n, n))
     diagonalise_nearly(re, im, rows_re, rows_im)
-    started, most = 0, z.size
+    started, centred, most = 0, 0, z.size
     for k in range(n):
         if re[k, k] > -CENTRE:
             z[started] = complex(re[k, k], min(im[k, k], -1e-16))
+            if abs(re[k, k]) <= CENTRAL:  # on the axis the iteration would stay on it
+                side = 1.0 if centred % 2 == 0 else -1.0
+                z[started] += side * ASIDE * abs(im[k, k])
+                centred += 1
             for m in range(count):
                 up[started, near[m]], up[most + started, near[m]] = rows_re[k, m], rows_im[k, m]
                 down[started, near[m]] = rows_re[k, count + m]
