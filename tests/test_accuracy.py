@@ -46,7 +46,6 @@ def test_a_few_wires_keep_the_bounds(measured):
     assert sum(whole["sets_by_energies"].values()) + whole["sets_with_quadrature"] == 6
 
 
-@pytest.mark.xfail(strict=True, reason="the largest errors found, far above their estimates")
 @pytest.mark.parametrize("index", [647, 1483])
 def test_the_worst_cases(index):
     """647: two poles just off the imaginary axis; 1483: a level at 0.03 µeV, its b of no sign."""

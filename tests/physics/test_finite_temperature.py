@@ -43,7 +43,6 @@ def test_the_estimate_bounds_the_error(seed):
     assert error <= 3 * estimate.item() + exact.error.item()
 
 
-@pytest.mark.xfail(strict=True, reason="poles off the imaginary axis are sought on it")
 def test_two_poles_that_have_just_left_the_imaginary_axis():
     """At ±0.25 − 10.77i µeV; Rayleigh quotients that start on the axis stay there."""
     arguments = np.array([0.15]), np.array([0.7]), np.array(BIAS), 0.05
