@@ -11,6 +11,7 @@ import xarray as xr
 from disorder_landscape import ArgumentError, Nanowire, chain, conductance, predict
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.learning.model import load_model_config
+from disorder_landscape.physics.labels import CONDUCTANCES
 
 CONFIG = "configs/smoke.toml"
 R2_TO_REACH = 0.87
@@ -57,7 +58,9 @@ def test_the_predicted_wire_conducts_like_the_true_one(run):
     closer = 0
     for i in range(10):
         true, other, guess = (
-            conductance(wire, run.config.dataset.mu, run.config.dataset.B).to_array().to_numpy()
+            conductance(wire, run.config.dataset.mu, run.config.dataset.B)[list(CONDUCTANCES)]
+            .to_array()
+            .to_numpy()
             for wire in (
                 realization(run.config.dataset, 1080 + i).wire,
                 realization(run.config.dataset, 1081 + i).wire,

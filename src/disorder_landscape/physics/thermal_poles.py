@@ -60,6 +60,37 @@ def _kernel_rule() -> tuple[FloatArray, FloatArray]:
     return 32 * x, np.cosh(16 * x) ** -2 * dx
 
 
+@nb.njit(cache=True)
+def _interpolated(u: FloatArray, share: FloatArray, nodes: int) -> FloatArray:  # pragma: no cover
+    """Return the weights, shape (row, 2 · node), of the values at ω_k, then −ω_k.
+
+    They give Σ_x share_x f(W u_x) of the polynomial f through these values; u has shape (row, x).
+    In plain loops, so that the sums do not depend on where arrays lie in memory.
+    """
+    terms = 2 * nodes
+    weights = np.zeros((u.shape[0], terms))
+    moments = np.empty(terms)
+    for row in range(u.shape[0]):
+        moments[:] = 0.0
+        for x in range(u.shape[1]):
+            before, now = 1.0, u[row, x]
+            moments[0] += share[x]
+            for n in range(1, terms):
+                moments[n] += share[x] * now
+                before, now = now, 2 * u[row, x] * now - before
+        for k in range(nodes):
+            theta = np.pi * (k + 0.5) / terms
+            for sign in range(2):
+                at = np.sin(theta) if sign == 0 else -np.sin(theta)
+                before, now = 1.0, at
+                total = 0.5 * moments[0]
+                for n in range(1, terms):
+                    total += moments[n] * now
+                    before, now = now, 2 * at * now - before
+                weights[row, sign * nodes + k] = total / nodes
+    return weights
+
+
 def thermal_node_weights(
     bias: FloatArray, kT: float, window: float, nodes: int
 ) -> tuple[FloatArray, FloatArray]:
@@ -69,21 +100,10 @@ def thermal_node_weights(
     """
     x, dx = _kernel_rule()
     u = np.clip((bias[:, None] + kT * x) / window, -1, 1)
-    T = np.polynomial.chebyshev.chebvander(u, 2 * nodes - 1)
-    moments = np.einsum("x,vxn->vn", dx / dx.sum(), T)
-    weights = moments @ _chebyshev_series(nodes)
-    return weights[:, :nodes], weights[:, nodes:]
+    weights = _interpolated(u, dx / dx.sum(), nodes)
+    return weights[:, :nodes].copy(), weights[:, nodes:].copy()
 
 
 def interpolation_weights(u: FloatArray, nodes: int) -> FloatArray:
     """Return the weights, shape (u, 2 · node), of the values at ω_k, then −ω_k, for those at uW."""
-    T = np.polynomial.chebyshev.chebvander(u, 2 * nodes - 1)
-    return np.asarray(T @ _chebyshev_series(nodes))
-
-
-def _chebyshev_series(nodes: int) -> FloatArray:
-    """Return what turns values at ω_k, then −ω_k, into Chebyshev coefficients: (2 · node)²."""
-    at = chebyshev_nodes(1.0, nodes)
-    series = np.polynomial.chebyshev.chebvander(np.concatenate([at, -at]), 2 * nodes - 1) / nodes
-    series[:, 0] /= 2
-    return np.asarray(series.T)
+    return np.asarray(_interpolated(u[:, None], np.ones(1), nodes))
