@@ -12,7 +12,7 @@ from scipy.special import polygamma
 import disorder_landscape as dl
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.physics import eigen, finite_temperature, jacobi, thermal_poles
-from disorder_landscape.physics.fast_solver import _prepare
+from disorder_landscape.physics.fast_solver import prepare
 from disorder_landscape.physics.hamiltonian import wire_hamiltonian
 from disorder_landscape.physics.levels import wire_levels
 from disorder_landscape.physics.parameters import BIAS, BOLTZMANN
@@ -97,7 +97,7 @@ def test_the_levels_are_those_of_the_hamiltonian(mu, B):
         np.empty((chunk, m, 2, 4)),
         np.empty(chunk),
     )
-    problem = _prepare([wire], np.array([mu]), np.array([B]), plan.omega)
+    problem = prepare([wire], np.array([mu]), np.array([B]), plan.omega)
     finite_temperature._solve(problem, plan, 0, 0, np.arange(1), data)
     E, weight = np.empty(8 * m), np.empty((8 * m, 8))
     count = wire_levels(

@@ -9,32 +9,19 @@ gap the results are those of `fast_solver`, at some 14 times the cost.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numba as nb
 import numpy as np
 
 from disorder_landscape.physics.complex_recursion import WIDTH, eliminate_inner_sites_complex
+from disorder_landscape.physics.fast_solver import Problem, prepare
 from disorder_landscape.physics.hamiltonian import ComplexArray
-from disorder_landscape.physics.leads import lead_self_energies, rotate_spin
 from disorder_landscape.physics.parameters import FloatArray, Nanowire
 from disorder_landscape.physics.pivoted import pivoted_end_green_functions
 from disorder_landscape.physics.recursion import LANES
 
 GROWTH_LIMIT = 1e7
 """Largest inverse pivot (in units of 1/t') up to which elimination without pivoting is trusted."""
-
-
-class _Problem(NamedTuple):
-    """What the kernel needs, in units of each wire's t' = √(t² + (α/2a)²)."""
-
-    V: FloatArray  # (wire, site), with barriers
-    zeeman_x: FloatArray  # (wire, B, site), V_Z cos 2φn
-    zeeman_z: FloatArray  # (wire, B, site), V_Z sin 2φn
-    kinetic: FloatArray  # (wire, mu), 2t − μ
-    normal: ComplexArray  # (wire, omega), ω + γω/√(Δ₀²−ω²)
-    anomalous: ComplexArray  # (wire, omega), γΔ₀/√(Δ₀²−ω²)
-    sigma: ComplexArray  # (wire, B, omega, lead, charge, 2, 2), in the rotated frame
 
 
 def retarded_pairing_factors(
@@ -45,30 +32,6 @@ def retarded_pairing_factors(
     root[abs(omega) > wire.delta0] *= -1j
     root[omega < -wire.delta0] *= -1
     return wire.gamma * omega / root, wire.gamma * wire.delta0 / root
-
-
-def _prepare(
-    wires: Sequence[Nanowire], mu: FloatArray, B: FloatArray, omega: FloatArray
-) -> _Problem:
-    sites = wires[0].sites
-    hop = np.array([np.hypot(w.hopping, w.spin_orbit_hopping) for w in wires])
-    angle = np.array([np.arctan2(w.spin_orbit_hopping, w.hopping) for w in wires])
-    zeeman = np.outer([w.zeeman_per_tesla for w in wires] / hop, B)[:, :, None]
-    phases = 2 * angle[:, None, None] * np.arange(sites)
-    pairing = np.array([retarded_pairing_factors(w, omega) for w in wires])
-    sigma = np.array([[lead_self_energies(w, field, omega) for field in B] for w in wires])
-    for of_wire, phi in zip(sigma, angle, strict=True):
-        for of_field in of_wire:
-            rotate_spin(of_field, phi * (sites - 1))
-    return _Problem(
-        V=np.array([w.potential_with_barriers for w in wires]) / hop[:, None],
-        zeeman_x=zeeman * np.cos(phases),
-        zeeman_z=zeeman * np.sin(phases),
-        kinetic=(2 * np.array([[w.hopping] for w in wires]) - mu) / hop[:, None],
-        normal=(omega + pairing[:, 0]) / hop[:, None],
-        anomalous=pairing[:, 1] / hop[:, None],
-        sigma=sigma / hop.reshape(-1, *[1] * 6),
-    )
 
 
 @nb.njit(cache=True)
@@ -147,7 +110,7 @@ def _ends_by_pivoting(
 
 @nb.njit(cache=True, parallel=True)
 def _conductance_kernel(
-    p: _Problem, growth_limit: float, out: FloatArray
+    p: Problem, growth_limit: float, out: FloatArray
 ) -> None:  # pragma: no cover
     """Fill out, shape (wire, B, mu·omega, 2, 4)."""
     wires, fields, pairs = out.shape[:3]
@@ -185,7 +148,7 @@ def bare_conductance(
 
     As `fast_solver.bare_conductance`, for real ω of either sign, ω ≠ ±Δ₀ of each wire.
     """
-    p = _prepare(wires, mu, B, omega)
+    p = prepare(wires, mu, B, omega, retarded_pairing_factors)
     out = np.empty((len(wires), B.size, mu.size * omega.size, 2, 4))
     _conductance_kernel(p, growth_limit, out)
     shaped = out.reshape(len(wires), B.size, mu.size, omega.size, 2, 4)

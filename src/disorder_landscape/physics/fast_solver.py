@@ -6,8 +6,8 @@ Same signatures as `kwant_solver`. Work is cut into pieces of one wire, one fiel
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
 import numba as nb
 import numpy as np
@@ -31,32 +31,41 @@ GROWTH_LIMIT = 1e7
 """Largest inverse pivot (in units of 1/t') up to which real elimination is trusted."""
 
 
-class _Problem(NamedTuple):
+PairingFactors = Callable[[Nanowire, FloatArray], tuple[Any, Any]]
+"""What `hamiltonian.pairing_factors` is, real or complex."""
+
+
+class Problem(NamedTuple):
     """What the kernels need, in units of each wire's t' = √(t² + (α/2a)²)."""
 
     V: FloatArray  # (wire, site), with barriers
     zeeman_x: FloatArray  # (wire, B, site), V_Z cos 2φn
     zeeman_z: FloatArray  # (wire, B, site), V_Z sin 2φn
     kinetic: FloatArray  # (wire, mu), 2t − μ
-    normal: FloatArray  # (wire, omega), ω + γω/√(Δ₀²−ω²)
-    anomalous: FloatArray  # (wire, omega), γΔ₀/√(Δ₀²−ω²)
+    normal: FloatArray | ComplexArray  # (wire, omega), ω + γω/√(Δ₀²−ω²), real below the gap
+    anomalous: FloatArray | ComplexArray  # (wire, omega), γΔ₀/√(Δ₀²−ω²)
     sigma: ComplexArray  # (wire, B, omega, lead, charge, 2, 2), in the rotated frame
 
 
-def _prepare(
-    wires: Sequence[Nanowire], mu: FloatArray, B: FloatArray, omega: FloatArray
-) -> _Problem:
+def prepare(
+    wires: Sequence[Nanowire],
+    mu: FloatArray,
+    B: FloatArray,
+    omega: FloatArray,
+    factors: PairingFactors = pairing_factors,
+) -> Problem:
+    """Return the terms of all wires, with Σ(ω) of the parent superconductor from `factors`."""
     sites = wires[0].sites
     hop = np.array([np.hypot(w.hopping, w.spin_orbit_hopping) for w in wires])
     angle = np.array([np.arctan2(w.spin_orbit_hopping, w.hopping) for w in wires])
     zeeman = np.outer([w.zeeman_per_tesla for w in wires] / hop, B)[:, :, None]
     phases = 2 * angle[:, None, None] * np.arange(sites)
-    pairing = np.array([pairing_factors(w, omega) for w in wires])
+    pairing = np.array([factors(w, omega) for w in wires])
     sigma = np.array([[lead_self_energies(w, field, omega) for field in B] for w in wires])
     for of_wire, phi in zip(sigma, angle, strict=True):
         for of_field in of_wire:
             rotate_spin(of_field, phi * (sites - 1))
-    return _Problem(
+    return Problem(
         V=np.array([w.potential_with_barriers for w in wires]) / hop[:, None],
         zeeman_x=zeeman * np.cos(phases),
         zeeman_z=zeeman * np.sin(phases),
@@ -69,7 +78,7 @@ def _prepare(
 
 @nb.njit(cache=True)
 def _solve_lanes(
-    p: _Problem,
+    p: Problem,
     w: int,
     f: int,
     first: int,
@@ -100,7 +109,7 @@ def _solve_lanes(
 
 @nb.njit(cache=True, parallel=True)
 def _conductance_kernel(
-    p: _Problem,
+    p: Problem,
     growth_limit: float,
     out: FloatArray,
 ) -> None:  # pragma: no cover
@@ -118,7 +127,7 @@ def _conductance_kernel(
 
 @nb.njit(cache=True, parallel=True)
 def _end_block_kernel(
-    p: _Problem,
+    p: Problem,
     growth_limit: float,
     out: ComplexArray,
 ) -> None:  # pragma: no cover
@@ -149,7 +158,7 @@ def bare_conductance(
     The last axes are the sign of ω (+, −) and G_LL, G_RR, G_LR, G_RL; 0 ≤ ω < Δ₀. All wires have
     the same number of sites. Lanes that grow beyond `growth_limit` are solved by `pivoted`.
     """
-    p = _prepare(wires, mu, B, omega)
+    p = prepare(wires, mu, B, omega)
     out = np.empty((len(wires), B.size, mu.size * omega.size, 2, 4))
     _conductance_kernel(p, growth_limit, out)
     shaped = out.reshape(len(wires), B.size, mu.size, omega.size, 2, 4)
@@ -163,7 +172,7 @@ def reflection_determinant(
 
     r = −1 + iΓ^½ G Γ^½ (Fisher–Lee), so det r = det(−1 + iΓG), real by particle–hole symmetry.
     """
-    p = _prepare(wires, mu, B, np.zeros(1))
+    p = prepare(wires, mu, B, np.zeros(1))
     out = np.empty((len(wires), B.size, mu.size, 2, 4, 4), dtype=np.complex128)
     _end_block_kernel(p, growth_limit, out)
     gamma = np.zeros((len(wires), B.size, 1, 2, 4, 4))

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from disorder_landscape.physics.ends import end_green_functions, lane_conductances
-from disorder_landscape.physics.fast_solver import GROWTH_LIMIT, _prepare, _Problem
+from disorder_landscape.physics.fast_solver import GROWTH_LIMIT, Problem, prepare
 from disorder_landscape.physics.hamiltonian import ComplexArray
 from disorder_landscape.physics.levels import isolated_end_green_function, to_chiral, wire_levels
 from disorder_landscape.physics.parameters import BOLTZMANN, FloatArray, Nanowire
@@ -84,7 +84,6 @@ class _Plan(NamedTuple):
     kT: float
     slopes: FloatArray  # (wire, 2, node + CHECKS): of the normal and anomalous terms
     hop: FloatArray  # (wire,)
-    drop: float
 
 
 def _plan(wires: Sequence[Nanowire], bias: FloatArray, kT: float, nodes: int) -> _Plan:
@@ -114,7 +113,6 @@ def _plan(wires: Sequence[Nanowire], bias: FloatArray, kT: float, nodes: int) ->
         kT=kT,
         slopes=slopes,
         hop=hop,
-        drop=DROP,
     )
 
 
@@ -162,7 +160,7 @@ def _self_energy_terms(plan: _Plan, lead: ComplexArray) -> ComplexArray:  # prag
 
 @nb.njit(cache=True)
 def _load_lanes(
-    p: _Problem,
+    p: Problem,
     plan: _Plan,
     s: FloatArray,
     w: int,
@@ -182,14 +180,14 @@ class _Solved(NamedTuple):
 
     isolated: FloatArray  # (CHUNK, node, 8, 8)
     slope: FloatArray  # (CHUNK, node, 8, 8)
-    green: ComplexArray  # (CHUNK, node + CHECKS, 8, 8), leads attached
+    green: ComplexArray  # (CHUNK, CHECKS, 8, 8), leads attached, at the checks
     bare: FloatArray  # (CHUNK, node + CHECKS, 2, 4), conductances at ±ω
     growth: FloatArray  # (CHUNK,)
 
 
 @nb.njit(cache=True)
 def _solve(
-    p: _Problem, plan: _Plan, w: int, f: int, mu: NDArray[np.int64], data: _Solved
+    p: Problem, plan: _Plan, w: int, f: int, mu: NDArray[np.int64], data: _Solved
 ) -> None:  # pragma: no cover
     """Fill data for the chemical potentials with indices mu."""
     s = np.empty(STATE_WITH_SLOPES * LANES)
@@ -215,9 +213,11 @@ def _solve(
                 growth = s[GROWTH * LANES + l]
                 if not growth <= data.growth[i]:  # so that NaN spreads
                     data.growth[i] = growth
-                _chiral_green_function(re, im, l, plan.hop[w], data.green[i, e])
                 lane_conductances(re, im, sigma[e], l, data.bare[i, e])
-                if not checking:
+                if checking:
+                    at = data.green[i, e - plan.nodes]
+                    _chiral_green_function(re, im, l, plan.hop[w], at)
+                else:
                     isolated_end_green_function(
                         s, l, plan.hop[w], data.isolated[i, e], data.slope[i, e]
                     )
@@ -237,7 +237,7 @@ def _average(
     """Write the thermal conductances of one set, shape (bias, 4); return the error estimate."""
     m = plan.nodes
     E, weight = np.empty(8 * m), np.empty((8 * m, 8))
-    count = wire_levels(plan.omega[:m], isolated, slope, E, weight, plan.drop)
+    count = wire_levels(plan.omega[:m], isolated, slope, E, weight, DROP)
     if count == 0:
         return np.inf
     E, weight = E[:count], weight[:count]
@@ -298,6 +298,19 @@ def _average(
 
 
 @nb.njit(cache=True, error_model="numpy")
+def _share_that_counts(plan: _Plan, z: ComplexArray, check: int) -> float:  # pragma: no cover
+    """Return what part of a difference at a check the average can have.
+
+    A pole misplaced by δ shows as v²δ/(ω − z)² and counts as v²δ/(kT)² in the average: so a
+    difference is scaled down where a pole is nearer than kT.
+    """
+    nearest = plan.kT
+    for n in range(z.size):
+        nearest = min(nearest, abs(plan.omega[plan.nodes + check] - z[n]))
+    return float((nearest / plan.kT) ** 2)
+
+
+@nb.njit(cache=True, error_model="numpy")
 def _roughness(
     plan: _Plan,
     z: ComplexArray,
@@ -314,9 +327,7 @@ def _roughness(
     worst = 0.0
     poles_at = np.empty(4)
     for k in range(CHECKS):
-        nearest = plan.kT
-        for n in range(z.size):
-            nearest = min(nearest, abs(plan.omega[m + k] - z[n]))
+        share = _share_that_counts(plan, z, k)
         for sign in range(2):
             w = plan.omega[m + k] if sign == 0 else -plan.omega[m + k]
             pole_sum(w, z, r, paired, poles_at)
@@ -324,7 +335,7 @@ def _roughness(
                 value = poles_at[c] - bare[m + k, sign, c]
                 for n in range(2 * m):
                     value += plan.at_checks[k, sign, n] * smooth[n, c]
-                value = abs(value) * (nearest / plan.kT) ** 2
+                value = abs(value) * share
                 if not value <= worst:
                     worst = value
     return worst
@@ -334,23 +345,16 @@ def _roughness(
 def _mismatch(
     plan: _Plan, z: ComplexArray, G: ComplexArray, green: ComplexArray
 ) -> float:  # pragma: no cover
-    """Return the largest difference of model and solver at the checks, in 1/meV.
-
-    A pole misplaced by δ shows as v²δ/(ω − z)² and counts as v²δ/(kT)² in the average: so a
-    difference is scaled down where a pole is nearer than kT.
-    """
+    """Return the largest difference of model and solver at the checks, in 1/meV."""
     worst = 0.0
     for k in range(CHECKS):
-        nearest = plan.kT
-        for n in range(z.size):
-            nearest = min(nearest, abs(plan.omega[plan.nodes + k] - z[n]))
         largest = 0.0
         for i in range(8):
             for j in range(i, 8):
-                difference = abs(G[k, i, j] - green[plan.nodes + k, i, j])
+                difference = abs(G[k, i, j] - green[k, i, j])
                 if not difference <= largest:  # so that NaN counts
                     largest = difference
-        largest *= (nearest / plan.kT) ** 2
+        largest *= _share_that_counts(plan, z, k)
         if not largest <= worst:
             worst = largest
     return worst
@@ -358,7 +362,7 @@ def _mismatch(
 
 @nb.njit(cache=True, parallel=True)
 def _kernel(
-    p: _Problem,
+    p: Problem,
     plan: _Plan,
     growth_limit: float,
     tasks: NDArray[np.int64],
@@ -372,7 +376,7 @@ def _kernel(
         data = _Solved(
             np.empty((CHUNK, m, 8, 8)),
             np.empty((CHUNK, m, 8, 8)),
-            np.empty((CHUNK, m + CHECKS, 8, 8), dtype=np.complex128),
+            np.empty((CHUNK, CHECKS, 8, 8), dtype=np.complex128),
             np.empty((CHUNK, m + CHECKS, 2, 4)),
             np.empty(CHUNK),
         )
@@ -424,7 +428,7 @@ def thermal_conductance(
     for nodes in NODES:
         plan = _plan(wires, bias, kT, nodes)
         found, estimate = np.full_like(G, np.nan), np.full(shape, np.inf)
-        _kernel(_prepare(wires, mu, B, plan.omega), plan, growth_limit, tasks, found, estimate)
+        _kernel(prepare(wires, mu, B, plan.omega), plan, growth_limit, tasks, found, estimate)
         found[~np.isfinite(estimate)] = np.nan
         for w, f, start, stop in tasks:
             energies[w, f, start:stop] += plan.omega.size
