@@ -1,111 +1,101 @@
-"""Real symmetric eigenproblems of small pencils, tracking a few rows of the eigenvectors only.
+"""Real symmetric eigenproblems of small pencils, of WIDTH sets at once.
 
 A wire's levels come from the pencil K y = e N y with b = (the ends' 8 rows of the basis). What is
-wanted are the e and the 8-vectors yᵀb, never the eigenvectors themselves. So: pivoted Cholesky of
-N = RᵀR, which leaves out basis vectors that depend on the others; A = R⁻ᵀ K R⁻¹; Householder
-tridiagonalisation; implicit QL (Golub and Van Loan, Matrix Computations, 4.2, 8.3), with the same
-orthogonal steps applied to R⁻ᵀ b. All loops run along rows, the way memory does.
+wanted are the e and the 8-vectors yᵀb, never the eigenvectors themselves. So: N = UᵀU (`loewner`);
+A = U⁻ᵀ K U⁻¹; Householder tridiagonalisation; implicit QL (Golub and Van Loan, Matrix Computations,
+4.2, 8.3), with the same orthogonal steps applied to U⁻ᵀ b.
+
+The sets of a vector go through the same steps; where one set is done before the others its steps
+are multiplications by one. Layout as in `loewner`.
 """
 
 from __future__ import annotations
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
+from disorder_landscape.physics.loewner import subtract_rows
 from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.physics.simd import (
+    WIDTH,
+    fill,
+    load,
+    roots,
+    sizes,
+    store,
+    where_greater,
+)
 
 EPSILON = 2.3e-16
-SUMS = {"reassoc", "contract", "nsz", "arcp"}
-"""What the compiler may do to sums: reorder them into vectors."""
+SWEEPS = 60
+"""Most QL sweeps for one level."""
 
 
-@nb.njit(cache=True, fastmath=SUMS, error_model="numpy")
-def _subtract(row: FloatArray, factor: float, other: FloatArray) -> None:  # pragma: no cover
-    """Subtract factor times the other row."""
-    for j in range(row.size):
-        row[j] -= factor * other[j]
+@nb.njit(cache=True, error_model="numpy")
+def _scale_row(M: FloatArray, first: int, last: int, share: FloatArray) -> None:  # pragma: no cover
+    """Multiply entries `first` to `last` of M by each set's share."""
+    factor = load(share, 0)
+    for j in range(first * WIDTH, last * WIDTH, WIDTH):
+        store(M, j, load(M, j) * factor)
 
 
-@nb.njit(cache=True, fastmath=SUMS, error_model="numpy")
-def pivoted_cholesky(
-    N: FloatArray, drop: float, R: FloatArray, order: NDArray[np.int64]
-) -> int:  # pragma: no cover
-    """Factor N[order][:, order] = RᵀR with the largest remaining pivot first.
-
-    Row k of R is written in the order of the original columns. Stops at pivots below `drop`
-    and returns how many rows there are.
-    """
-    n = N.shape[0]
-    pivots = np.empty(n)
-    for i in range(n):
-        pivots[i] = N[i, i]
-    for k in range(n):
-        best = 0
-        for i in range(1, n):
-            if pivots[i] > pivots[best]:
-                best = i
-        if not pivots[best] > drop:
-            return int(k)
-        order[k] = best
-        row = R[k]
-        row[:] = N[best]
-        for i in range(k):
-            factor = R[i, best]
-            for j in range(n):
-                row[j] -= factor * R[i, j]
-        root = 1.0 / np.sqrt(row[best])
-        for j in range(n):
-            row[j] *= root
-            pivots[j] -= row[j] ** 2
-        pivots[best] = -1.0
-    return int(n)
-
-
-@nb.njit(cache=True, fastmath=SUMS, error_model="numpy")
+@nb.njit(cache=True, error_model="numpy")
 def reduce_pencil(
-    K: FloatArray,
-    b: FloatArray,
-    R: FloatArray,
-    order: NDArray[np.int64],
-    rank: int,
-    A: FloatArray,
-    rows: FloatArray,
+    U: FloatArray, K: FloatArray, stride: int, n: int, A: FloatArray, rows: FloatArray
 ) -> None:  # pragma: no cover
-    """Write the upper triangle of A = R⁻ᵀKR⁻¹ and rows = R⁻ᵀb, shape (rank, 8)."""
-    U, Y = np.empty((rank, rank)), np.empty((rank, rank))
-    for k in range(rank):
-        for j in range(rank):
-            U[k, j] = R[k, order[j]]
-    for k in range(rank):
-        scale = 1.0 / U[k, k]
-        for j in range(rank):
-            Y[k, j] = K[order[k], order[j]]
-        for c in range(8):
-            rows[k, c] = b[order[k], c]
-        for i in range(k):
-            factor = U[i, k]
-            for j in range(rank):
-                Y[k, j] -= factor * Y[i, j]
-            for c in range(8):
-                rows[k, c] -= factor * rows[i, c]
-        for j in range(rank):
-            Y[k, j] *= scale
-        for c in range(8):
-            rows[k, c] *= scale
-    for k in range(rank):
-        scale = 1.0 / U[k, k]
-        for j in range(k, rank):
-            A[k, j] = Y[j, k]
-        for i in range(k):
-            factor = U[i, k]
-            for j in range(k, rank):
-                A[k, j] -= factor * A[i, j]
-        for j in range(k, rank):
-            A[k, j] *= scale
+    """Write the upper triangle of A = U⁻ᵀKU⁻¹ and turn the rows b into U⁻ᵀb.
+
+    Parameters
+    ----------
+    U, K : arrays
+        Lower triangles of Uᵀ and K in rows of `stride` entries, see `loewner`.
+    n : int
+        How many rows.
+    A : array, shape (n · n · WIDTH,)
+    rows : array, shape (n · 8 · WIDTH,) or longer
+    """
+    W = WIDTH
+    Y, share = np.empty(n * n * W), np.empty(W)
+    for k in range(n):
+        for j in range(n):
+            low, high = min(k, j), max(k, j)
+            store(Y, (k * n + j) * W, load(K, (high * stride + low) * W))
+    for k in range(n):
+        factors = U[k * stride * W :]
+        store(share, 0, fill(1.0) / load(factors, k * W))
+        subtract_rows(Y, k, 0, n, factors, k)
+        subtract_rows(rows, k, 0, 8, factors, k)
+        _scale_row(Y, k * n, (k + 1) * n, share)
+        _scale_row(rows, 8 * k, 8 * k + 8, share)
+    for k in range(n):
+        factors = U[k * stride * W :]
+        store(share, 0, fill(1.0) / load(factors, k * W))
+        for j in range(k, n):
+            store(A, (k * n + j) * W, load(Y, (j * n + k) * W))
+        subtract_rows(A, k, k, n, factors, k)
+        _scale_row(A, k * n + k, (k + 1) * n, share)
 
 
-@nb.njit(cache=True, fastmath=SUMS, error_model="numpy")
+@nb.njit(cache=True, error_model="numpy")
+def _reflector(
+    A: FloatArray, k: int, n: int, new: FloatArray, off: FloatArray, beta: FloatArray
+) -> None:  # pragma: no cover
+    """Write the reflection 1 − β new newᵀ that leaves row k one entry beside the diagonal."""
+    W = WIDTH
+    zero, one = fill(0.0), fill(1.0)
+    total = zero
+    for j in range(k + 1, n):
+        entry = load(A, (k * n + j) * W)
+        total = total + entry * entry
+        store(new, j * W, entry)
+    norm, head = roots(total), load(new, (k + 1) * W)
+    alpha = where_greater(head, zero, zero - norm, norm)
+    store(off, k * W, alpha)
+    store(new, (k + 1) * W, head - alpha)
+    store(beta, 0, where_greater(norm, zero, one / (norm * (norm + sizes(head))), zero))
+
+
+@nb.njit(cache=True, error_model="numpy")
 def _update_and_multiply(
     A: FloatArray,
     first: int,
@@ -116,85 +106,171 @@ def _update_and_multiply(
     product: FloatArray,
 ) -> None:  # pragma: no cover
     """Subtract v pᵀ + p vᵀ from A[first:, first:] and multiply it by `new`, in one pass over A."""
-    for j in range(first, n):
-        product[j] = 0.0
+    W = WIDTH
+    for j in range(first * W, n * W, W):
+        store(product, j, fill(0.0))
     for i in range(first, n):
-        vi, pi, ni = v[i], p[i], new[i]
-        diagonal = A[i, i] - 2 * vi * pi
-        A[i, i] = diagonal
-        total = diagonal * ni
-        row, p_row, v_row = A[i, i + 1 : n], p[i + 1 : n], v[i + 1 : n]
-        new_row, product_row = new[i + 1 : n], product[i + 1 : n]
-        for j in range(row.size):
-            a = row[j] - vi * p_row[j] - pi * v_row[j]
-            row[j] = a
-            total += a * new_row[j]
-            product_row[j] += a * ni
-        product[i] += total
+        vi, pi, ni = load(v, i * W), load(p, i * W), load(new, i * W)
+        at = i * n * W
+        diagonal = load(A, at + i * W) - vi * pi - vi * pi
+        store(A, at + i * W, diagonal)
+        total = load(product, i * W) + diagonal * ni
+        for j in range((i + 1) * W, n * W, W):
+            entry = load(A, at + j) - vi * load(p, j) - pi * load(v, j)
+            store(A, at + j, entry)
+            total = total + entry * load(new, j)
+            store(product, j, load(product, j) + entry * ni)
+        store(product, i * W, total)
 
 
-@nb.njit(cache=True, fastmath=SUMS, error_model="numpy")
+@nb.njit(cache=True, error_model="numpy")
+def _reflect_rows(
+    rows: FloatArray, first: int, n: int, new: FloatArray, beta: FloatArray
+) -> None:  # pragma: no cover
+    """Apply the reflection to the 8 columns of rows."""
+    W = WIDTH
+    for c in range(0, 8 * W, W):
+        total = fill(0.0)
+        for j in range(first, n):
+            total = total + load(new, j * W) * load(rows, 8 * j * W + c)
+        total = total * load(beta, 0)
+        for j in range(first, n):
+            at = 8 * j * W + c
+            store(rows, at, load(rows, at) - load(new, j * W) * total)
+
+
+@nb.njit(cache=True, error_model="numpy")
 def tridiagonalise(
     A: FloatArray, n: int, rows: FloatArray, diagonal: FloatArray, off: FloatArray
 ) -> None:  # pragma: no cover
     """Bring A (n×n, upper triangle, destroyed) to tridiagonal form by Householder reflections."""
-    v, p = np.zeros(n), np.zeros(n)
-    new, product, reflected = np.zeros(n), np.empty(n), np.empty(8)
-    for k in range(n - 2):
+    W = WIDTH
+    v, p, new, product = np.zeros(n * W), np.zeros(n * W), np.zeros(n * W), np.empty(n * W)
+    beta = np.empty(W)
+    for k in range(n):
+        vk, pk = load(v, k * W), load(p, k * W)
         for j in range(k, n):  # the previous reflection, of row k
-            A[k, j] -= v[k] * p[j] + p[k] * v[j]
-        diagonal[k] = A[k, k]
-        norm = 0.0
-        for j in range(k + 1, n):
-            norm += A[k, j] ** 2
-            new[j] = A[k, j]
-        norm = np.sqrt(norm)
-        head = A[k, k + 1]
-        alpha = -norm if head > 0 else norm
-        off[k] = alpha
-        new[k + 1] -= alpha
-        beta = 1.0 / (norm * (norm + abs(head))) if norm > 0.0 else 0.0
+            at = (k * n + j) * W
+            store(A, at, load(A, at) - vk * load(p, j * W) - pk * load(v, j * W))
+        store(diagonal, k * W, load(A, (k * n + k) * W))
+        if k == n - 2:
+            store(off, k * W, load(A, (k * n + k + 1) * W))
+        if k >= n - 2:
+            continue
+        _reflector(A, k, n, new, off, beta)
         _update_and_multiply(A, k + 1, n, v, p, new, product)
-        overlap = 0.0
-        for j in range(k + 1, n):
-            product[j] *= beta
-            overlap += product[j] * new[j]
-        overlap *= 0.5 * beta
-        for j in range(k + 1, n):
-            v[j] = new[j]
-            p[j] = product[j] - overlap * new[j]
-        reflected[:] = 0.0
-        for j in range(k + 1, n):
-            _subtract(reflected, -beta * new[j], rows[j])
-        for j in range(k + 1, n):
-            _subtract(rows[j], new[j], reflected)
-    for k in range(max(n - 2, 0), n):
-        for j in range(k, n):
-            A[k, j] -= v[k] * p[j] + p[k] * v[j]
-        diagonal[k] = A[k, k]
-    if n > 1:
-        off[n - 2] = A[n - 2, n - 1]
+        overlap, share = fill(0.0), load(beta, 0)
+        for j in range((k + 1) * W, n * W, W):
+            entry = load(product, j) * share
+            store(product, j, entry)
+            overlap = overlap + entry * load(new, j)
+        overlap = overlap * share * fill(0.5)
+        for j in range((k + 1) * W, n * W, W):
+            entry = load(new, j)
+            store(v, j, entry)
+            store(p, j, load(product, j) - overlap * entry)
+        _reflect_rows(rows, k + 1, n, new, beta)
 
 
-@nb.njit(cache=True, fastmath=SUMS, error_model="numpy")
-def _rotate_rows(
-    c: FloatArray, s: FloatArray, first: int, last: int, rows: FloatArray
+@nb.njit(cache=True, error_model="numpy")
+def _split(
+    diagonal: FloatArray, off: FloatArray, first: int, n: int, end: FloatArray
+) -> int:  # pragma: no cover
+    """Write where each set's matrix first falls apart from `first` on; return the last of them."""
+    W = WIDTH
+    at, tiny = fill(float(n - 1)), fill(EPSILON)
+    for k in range(n - 2, first - 1, -1):
+        around = sizes(load(diagonal, k * W)) + sizes(load(diagonal, (k + 1) * W))
+        at = where_greater(sizes(load(off, k * W)), tiny * around, at, fill(float(k)))
+    store(end, 0, at)
+    last = first
+    for l in range(W):
+        last = max(last, int(end[l]))
+    return last
+
+
+@nb.njit(cache=True, error_model="numpy")
+def _sweep(
+    diagonal: FloatArray,
+    off: FloatArray,
+    first: int,
+    last: int,
+    end: FloatArray,
+    shifted: FloatArray,
+    rows: FloatArray,
 ) -> None:  # pragma: no cover
-    """Apply rotations i = last − 1 … first of rows i and i + 1, carrying row i along."""
-    r0, r1, r2, r3 = rows[last, 0], rows[last, 1], rows[last, 2], rows[last, 3]
-    r4, r5, r6, r7 = rows[last, 4], rows[last, 5], rows[last, 6], rows[last, 7]
+    """Chase each set's bulge from its end to `first`, carrying the row that turns next along."""
+    W = WIDTH
+    zero, one, until = fill(0.0), fill(1.0), load(end, 0)
+    s, c, p, g = one, one, zero, load(shifted, 0)
+    at = 8 * last * W
+    r0, r1, r2, r3 = (
+        load(rows, at),
+        load(rows, at + W),
+        load(rows, at + 2 * W),
+        load(rows, at + 3 * W),
+    )
+    r4, r5, r6, r7 = (
+        load(rows, at + 4 * W),
+        load(rows, at + 5 * W),
+        load(rows, at + 6 * W),
+        load(rows, at + 7 * W),
+    )
     for i in range(last - 1, first - 1, -1):
-        ci, si, row, below = c[i], s[i], rows[i], rows[i + 1]
-        q0, q1, q2, q3 = row[0], row[1], row[2], row[3]
-        q4, q5, q6, q7 = row[4], row[5], row[6], row[7]
-        below[0], below[1] = si * q0 + ci * r0, si * q1 + ci * r1
-        below[2], below[3] = si * q2 + ci * r2, si * q3 + ci * r3
-        below[4], below[5] = si * q4 + ci * r4, si * q5 + ci * r5
-        below[6], below[7] = si * q6 + ci * r6, si * q7 + ci * r7
-        r0, r1, r2, r3 = ci * q0 - si * r0, ci * q1 - si * r1, ci * q2 - si * r2, ci * q3 - si * r3
-        r4, r5, r6, r7 = ci * q4 - si * r4, ci * q5 - si * r5, ci * q6 - si * r6, ci * q7 - si * r7
-    row = rows[first]
-    row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7] = r0, r1, r2, r3, r4, r5, r6, r7
+        here = fill(float(i))
+        entry, d, below = load(off, i * W), load(diagonal, i * W), load(diagonal, (i + 1) * W)
+        f, b = s * entry, c * entry
+        square = f * f + g * g
+        r = roots(square)
+        inverse = where_greater(square, zero, one / r, zero)
+        sine = f * inverse
+        cosine = where_greater(square, zero, g * inverse, one)
+        h = below - p
+        x = (d - h) * sine + (b + b) * cosine
+        q = sine * x
+        store(off, (i + 1) * W, where_greater(until, here, r, load(off, (i + 1) * W)))
+        store(diagonal, (i + 1) * W, where_greater(until, here, h + q, below))
+        g = where_greater(until, here, cosine * x - b, g)
+        p = where_greater(until, here, q, p)
+        s, c = where_greater(until, here, sine, s), where_greater(until, here, cosine, c)
+        sine, cosine = where_greater(until, here, sine, zero), where_greater(until, here, c, one)
+        at = 8 * i * W
+        q0, q1, q2, q3 = (
+            load(rows, at),
+            load(rows, at + W),
+            load(rows, at + 2 * W),
+            load(rows, at + 3 * W),
+        )
+        q4, q5, q6, q7 = (
+            load(rows, at + 4 * W),
+            load(rows, at + 5 * W),
+            load(rows, at + 6 * W),
+            load(rows, at + 7 * W),
+        )
+        store(rows, at + 8 * W, sine * q0 + cosine * r0)
+        store(rows, at + 9 * W, sine * q1 + cosine * r1)
+        store(rows, at + 10 * W, sine * q2 + cosine * r2)
+        store(rows, at + 11 * W, sine * q3 + cosine * r3)
+        store(rows, at + 12 * W, sine * q4 + cosine * r4)
+        store(rows, at + 13 * W, sine * q5 + cosine * r5)
+        store(rows, at + 14 * W, sine * q6 + cosine * r6)
+        store(rows, at + 15 * W, sine * q7 + cosine * r7)
+        r0, r1 = cosine * q0 - sine * r0, cosine * q1 - sine * r1
+        r2, r3 = cosine * q2 - sine * r2, cosine * q3 - sine * r3
+        r4, r5 = cosine * q4 - sine * r4, cosine * q5 - sine * r5
+        r6, r7 = cosine * q6 - sine * r6, cosine * q7 - sine * r7
+    at = 8 * first * W
+    store(rows, at, r0)
+    store(rows, at + W, r1)
+    store(rows, at + 2 * W, r2)
+    store(rows, at + 3 * W, r3)
+    store(rows, at + 4 * W, r4)
+    store(rows, at + 5 * W, r5)
+    store(rows, at + 6 * W, r6)
+    store(rows, at + 7 * W, r7)
+    here, at = fill(float(first)), first * W
+    store(diagonal, at, load(diagonal, at) - p)  # p = 0 where nothing was to do
+    store(off, at, where_greater(until, here, g, load(off, at)))
 
 
 @nb.njit(cache=True, error_model="numpy")
@@ -203,49 +279,28 @@ def tridiagonal_levels(
 ) -> bool:  # pragma: no cover
     """Turn the diagonal into the eigenvalues and row j into the 8-vector of eigenvector j.
 
-    Implicit QL with Wilkinson's shift; returns whether it has converged.
+    Implicit QL with Wilkinson's shift; returns whether it has converged. NaN stays with its set.
     """
-    cosines, sines = np.empty(n), np.empty(n)
-    off[n - 1] = 0.0
-    for l in range(n):
-        converged = False
-        for _ in range(60):
-            m = l
-            while m < n - 1:
-                if abs(off[m]) <= EPSILON * (abs(diagonal[m]) + abs(diagonal[m + 1])):
-                    break
-                m += 1
-            if m == l:
-                converged = True
+    W = WIDTH
+    end, shifted = np.empty(W), np.empty(W)
+    store(off, (n - 1) * W, fill(0.0))
+    for first in range(n):
+        for sweep in range(SWEEPS + 1):
+            last = _split(diagonal, off, first, n, end)
+            if last == first:
                 break
-            g = (diagonal[l + 1] - diagonal[l]) / (2 * off[l])
-            r = np.sqrt(g * g + 1)
-            g = diagonal[m] - diagonal[l] + off[l] / (g + np.copysign(r, g))
-            s = c = 1.0
-            p = 0.0
-            stopped = l
-            for i in range(m - 1, l - 1, -1):
-                f, b = s * off[i], c * off[i]
-                r = np.sqrt(f * f + g * g)
-                off[i + 1] = r
-                if r == 0.0:  # the matrix falls apart here
-                    diagonal[i + 1] -= p
-                    off[m] = 0.0
-                    stopped = i + 1
-                    break
-                inverse = 1.0 / r
-                s, c = f * inverse, g * inverse
-                cosines[i], sines[i] = c, s
-                g = diagonal[i + 1] - p
-                r = (diagonal[i] - g) * s + 2 * c * b
-                p = s * r
-                diagonal[i + 1] = g + p
-                g = c * r - b
-            _rotate_rows(cosines, sines, stopped, m, rows)
-            if stopped == l:
-                diagonal[l] -= p
-                off[l] = g
-                off[m] = 0.0
-        if not converged:
-            return False
+            if sweep == SWEEPS:
+                return False
+            for l in range(W):
+                m, at = int(end[l]), first * W + l
+                shifted[l] = 0.0
+                if m > first:
+                    h = (diagonal[at + W] - diagonal[at]) / (2 * off[at])
+                    r = np.sqrt(h * h + 1)
+                    shifted[l] = off[at] / (h + np.copysign(r, h))
+                    shifted[l] += diagonal[m * W + l] - diagonal[at]
+            _sweep(diagonal, off, first, last, end, shifted, rows)
+            for l in range(W):
+                if int(end[l]) > first:
+                    off[int(end[l]) * W + l] = 0.0
     return True

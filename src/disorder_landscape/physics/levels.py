@@ -25,15 +25,12 @@ from __future__ import annotations
 import numba as nb
 import numpy as np
 
-from disorder_landscape.physics.eigen import (
-    pivoted_cholesky,
-    reduce_pencil,
-    tridiagonal_levels,
-    tridiagonalise,
-)
+from disorder_landscape.physics.eigen import reduce_pencil, tridiagonal_levels, tridiagonalise
 from disorder_landscape.physics.hamiltonian import ComplexArray
+from disorder_landscape.physics.loewner import independent_directions, resolvents
 from disorder_landscape.physics.parameters import FloatArray
 from disorder_landscape.physics.recursion import C_AT, D_AT, E_AT, LANES, SLOPES
+from disorder_landscape.physics.simd import WIDTH
 
 ZERO_MODE = 3e-5
 """Below this energy in meV Eb is too small to tell b; completeness does."""
@@ -137,75 +134,27 @@ def invert(M: FloatArray | ComplexArray) -> None:  # pragma: no cover
 
 
 @nb.njit(cache=True, error_model="numpy")
-def _loewner_pencil(
-    omega: FloatArray,
-    G: FloatArray,
-    slope: FloatArray,
-    N: FloatArray,
-    K: FloatArray,
-    b: FloatArray,
-) -> None:  # pragma: no cover
-    """Write the products ⟨j|k⟩, ⟨j|A|k⟩ and the rows P of the normalised basis."""
-    nodes, size = omega.size, G.shape[1]
-    phi, dphi = np.empty((nodes, 8, 8)), np.empty((nodes, 8, 8))
-    for k in range(nodes):
-        w = omega[k]
-        for i in range(size):
-            for j in range(size):
-                if i < 4 and j < 4:
-                    p, d = G[k, i, j] / w, (slope[k, i, j] - G[k, i, j] / w) / w
-                elif i >= 4 and j >= 4:
-                    p, d = G[k, i, j] * w, slope[k, i, j] * w + G[k, i, j]
-                    if i == j:
-                        p -= 1.0
-                else:
-                    p, d = G[k, i, j], slope[k, i, j]
-                phi[k, i, j], dphi[k, i, j] = p, d / (2 * w)
-    scale = np.empty(8 * nodes)
-    for k in range(nodes):
-        for i in range(size):
-            scale[8 * k + i] = 1.0 / np.sqrt(-dphi[k, i, i])
-            for c in range(size):
-                b[8 * k + i, c] = scale[8 * k + i] * phi[k, i, c]
-    for k in range(nodes):
-        xk = omega[k] ** 2
-        for m in range(k, nodes):
-            xm = omega[m] ** 2
-            for i in range(size):
-                for j in range(size):
-                    if k == m:
-                        norm = -dphi[k, i, j]
-                        energy = -phi[k, i, j] + xk * norm
-                    else:
-                        norm = -(phi[k, i, j] - phi[m, i, j]) / (xk - xm)
-                        energy = -phi[m, i, j] + xk * norm
-                    factor = scale[8 * k + i] * scale[8 * m + j]
-                    N[8 * k + i, 8 * m + j] = norm * factor
-                    N[8 * m + j, 8 * k + i] = norm * factor
-                    K[8 * k + i, 8 * m + j] = energy * factor
-                    K[8 * m + j, 8 * k + i] = energy * factor
-
-
-@nb.njit(cache=True, error_model="numpy")
 def wire_levels(
     omega: FloatArray,
     G: FloatArray,
     slope: FloatArray,
+    drop: float,
     E: FloatArray,
     weight: FloatArray,
-    drop: float,
 ) -> int:  # pragma: no cover
-    """Find the levels from G and dG/dω at the nodes.
+    """Find the levels of WIDTH sets from G and dG/dω at the nodes.
 
     Parameters
     ----------
     omega : array, shape (node,)
         Positive, in meV.
-    G, slope : array, shape (node, 8, 8)
+    G, slope : arrays, shape (WIDTH, node, 8, 8)
         From `isolated_end_green_function`.
-    E : array, shape (8 · node,)
-        Written: the levels in meV, unsorted.
-    weight : array, shape (8 · node, 8)
+    drop : float
+        Directions of which less than this (squared, relative) is new are left out.
+    E : array, shape (WIDTH, 8 · node)
+        Written: the levels in meV, unsorted; NaN where the data make no model.
+    weight : array, shape (WIDTH, 8 · node, 8)
         Written: a and b of every level.
 
     Returns
@@ -213,28 +162,33 @@ def wire_levels(
     int
         How many levels there are; 0 if the data make no model.
     """
-    n = 8 * omega.size
-    N, K, b = np.empty((n, n)), np.empty((n, n)), np.empty((n, 8))
-    R, A, off = np.empty((n, n)), np.empty((n, n)), np.empty(n)
-    order = np.empty(n, dtype=np.int64)
-    _loewner_pencil(omega, G, slope, N, K, b)
-    rank = pivoted_cholesky(N, drop, R, order)
+    W, n = WIDTH, 8 * omega.size
+    phi, norm = np.empty(G.shape), np.empty(G.shape)
+    U, K, rows = np.empty(n * n * W), np.empty(n * n * W), np.empty(8 * n * W)
+    for l in range(W):
+        resolvents(omega, G[l], slope[l], phi[l], norm[l])
+    rank = independent_directions(omega, phi, norm, drop, U, K, rows)
     if rank == 0:
         return 0
-    reduce_pencil(K, b, R, order, rank, A, weight)
-    tridiagonalise(A, rank, weight, E, off)
-    if not tridiagonal_levels(E, off, rank, weight):
+    A, diagonal, off = np.empty(rank * rank * W), np.empty(rank * W), np.empty(rank * W)
+    reduce_pencil(U, K, n, rank, A, rows)
+    tridiagonalise(A, rank, rows, diagonal, off)
+    if not tridiagonal_levels(diagonal, off, rank, rows):
         return 0
-    small = 0
-    for j in range(rank):
-        E[j] = np.sqrt(max(E[j], 0.0))
-        if E[j] < ZERO_MODE:
-            small += 1
-        else:
-            for c in range(4, 8):
-                weight[j, c] /= E[j]
-    if small > 0:
-        _complete_zero_modes(omega[0], G[0], E[:rank], weight)
+    for l in range(W):
+        small = 0
+        for j in range(rank):
+            square = diagonal[j * W + l]
+            E[l, j] = np.sqrt(square) if not square < 0.0 else 0.0
+            for c in range(8):
+                weight[l, j, c] = rows[(8 * j + c) * W + l]
+            if E[l, j] < ZERO_MODE:
+                small += 1
+            else:
+                for c in range(4, 8):
+                    weight[l, j, c] /= E[l, j]
+        if small > 0:
+            _complete_zero_modes(omega[0], G[l, 0], E[l, :rank], weight[l])
     return int(rank)
 
 
@@ -244,7 +198,10 @@ def _complete_zero_modes(
 ) -> None:  # pragma: no cover
     """Give the levels at zero the b that the others leave of ωG₋₋ = Σ b bᵀ ω²/(ω² − E²)."""
     x = omega**2
-    rest = omega * G[4:, 4:]
+    rest = np.empty((4, 4))
+    for i in range(4):
+        for k in range(4):
+            rest[i, k] = omega * G[4 + i, 4 + k]
     for j in range(E.size):
         if E[j] >= ZERO_MODE:
             factor = x / (x - E[j] ** 2)

@@ -5,103 +5,188 @@ analytic where G has its poles z. So the residue of the probability at z is
 
     r_ab = (Γ_a v_a)ᵀ [G_ab(z*)]* (Γ_b v_b),   Γ = −2 Im Σ continued from the real axis,
 
-and the thermal average of every term has a closed form (see `thermal_poles`).
+and the thermal average of every term has a closed form (see `thermal_poles`). As G_iso(z*)* is
+G_iso(z), [G(z*)]* = S̄ M̄⁻¹ S̄ − S̄ with S̄(z) = S(z*)* and M̄ = S̄ − G_iso(z) (`dressing`).
 """
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numba as nb
 import numpy as np
+from numpy.typing import NDArray
 
-from disorder_landscape.physics.hamiltonian import ComplexArray
+from disorder_landscape.physics.dressing import (
+    ENDS,
+    Leads,
+    Levels,
+    cubics,
+    factor,
+    isolated_sums,
+    of_ends,
+    reciprocals,
+    solve_lower,
+)
+from disorder_landscape.physics.inverse_iteration import Batch, Poles
 from disorder_landscape.physics.parameters import FloatArray
-from disorder_landscape.physics.resonances import CUBIC, upper_index
+from disorder_landscape.physics.simd import WIDTH, fill, load, store
 
-PAIRS = ((0, 1), (2, 3), (0, 2), (1, 3), (0, 3), (1, 2))
+PAIRS = np.array([[0, 1], [2, 3], [0, 2], [1, 3], [0, 3], [1, 2]])
 """Pairs of channel sets Le, Lh, Re, Rh: Andreev at L, at R, then ee, hh, eh, he."""
 
 
-@nb.njit(cache=True)
-def to_physical(v: ComplexArray, out: ComplexArray) -> None:  # pragma: no cover
-    """Undo `levels.to_chiral` for a vector."""
-    half = np.sqrt(0.5)
-    for end in range(2):
-        c0, c1, c2, c3 = v[2 * end], v[2 * end + 1], v[4 + 2 * end], v[5 + 2 * end]
-        out[4 * end], out[4 * end + 1] = half * (c1 + c3), half * (c0 + c2)
-        out[4 * end + 2], out[4 * end + 3] = half * (c0 - c2), half * (c3 - c1)
+class Terms(NamedTuple):
+    """Σ 2 Re[r/(ω − z)]: padded with zeros to full vectors."""
 
-
-@nb.njit(cache=True)
-def _end_to_chiral(end: int, c: ComplexArray, out: ComplexArray) -> None:  # pragma: no cover
-    """Write the chiral form, shape (8,), of a vector (u↑, u↓, −v↓, v↑) on one end."""
-    half = np.sqrt(0.5)
-    out[:] = 0j
-    out[2 * end], out[2 * end + 1] = half * (c[1] + c[2]), half * (c[0] - c[3])
-    out[4 + 2 * end], out[5 + 2 * end] = half * (c[1] - c[2]), half * (c[0] + c[3])
+    zr: FloatArray  # (pole,)
+    zi: FloatArray
+    re: FloatArray  # (8, pole), of r for G_LL, G_RR, G_LR, G_RL, electrons, then holes incident
+    im: FloatArray  # a hole's r is 0 where a pole is its own mirror image
 
 
 @nb.njit(cache=True, error_model="numpy")
-def conductance_residues(
-    z: ComplexArray, v: ComplexArray, G: ComplexArray, terms: ComplexArray, out: ComplexArray
-) -> None:  # pragma: no cover
-    """Write the residues of G_LL, G_RR, G_LR, G_RL, electrons and holes incident: (pole, 2, 4).
-
-    v: shape (pole, 8), G: G(z*), shape (pole, 8, 8), both in the chiral basis.
-    """
-    size = v.shape[1]
-    y, physical = np.empty(8, dtype=np.complex128), np.empty(8, dtype=np.complex128)
-    part = np.empty(4, dtype=np.complex128)
-    chiral = np.empty((4, 8), dtype=np.complex128)
-    p = np.empty(6, dtype=np.complex128)
-    for k in range(z.size):
-        y[:] = 0j
-        for i in range(size):  # y = Γ v
-            for j in range(size):
-                if (i // 2) % 2 == (j // 2) % 2:  # on the same end
-                    e = upper_index(i, j)
-                    value = complex(terms[CUBIC - 1, e].imag)
-                    for power in range(CUBIC - 2, -1, -1):
-                        value = value * z[k] + terms[power, e].imag
-                    y[i] -= 2 * value * v[k, j]
-        to_physical(y, physical)
-        for block in range(4):
-            part[:] = 0j
-            first = 2 * (block % 2)
-            part[first : first + 2] = physical[2 * block : 2 * block + 2]
-            _end_to_chiral(block // 2, part, chiral[block])
-        for pair in range(6):
-            a, b = PAIRS[pair]
-            p[pair] = 0j
-            for i in range(size):
-                if (i // 2) % 2 == a // 2:
-                    for j in range(size):
-                        if (j // 2) % 2 == b // 2:
-                            p[pair] += chiral[a, i] * np.conj(G[k, i, j]) * chiral[b, j]
-        al, ar, ee, hh, eh, he = p
-        r = out[k]
-        r[0, 0], r[0, 1] = 2 * al + ee + eh, 2 * ar + ee + he
-        r[0, 2], r[0, 3] = ee - he, ee - eh
-        r[1, 0], r[1, 1] = 2 * al + hh + he, 2 * ar + hh + eh
-        r[1, 2], r[1, 3] = hh - eh, hh - he
+def _widths_seen(leads: Leads, b: Batch, y: FloatArray) -> None:  # pragma: no cover
+    """Write y = Γ v, v = S t/√norm; y: (2, 8 · WIDTH)."""
+    W = WIDTH
+    v = np.empty((2, 8 * W))
+    cubics(leads.inverse, b.zr, b.zi, b.s)
+    of_ends(b.s[0], b.s[1], b.t[0], b.t[1], v[0], v[1])
+    for l in range(W):
+        root = 1.0 / np.sqrt(complex(b.norm[l], b.norm[W + l]))
+        for i in range(8):
+            value = complex(v[0, i * W + l], v[1, i * W + l]) * root
+            v[0, i * W + l], v[1, i * W + l] = value.real, value.imag
+    cubics(leads.gamma, b.zr, b.zi, b.s)
+    of_ends(b.s[0], b.s[1], v[0], v[1], y[0], y[1])
 
 
 @nb.njit(cache=True, error_model="numpy")
-def pole_sum(
-    w: float, z: ComplexArray, r: ComplexArray, paired: int, out: FloatArray
-) -> None:  # pragma: no cover
-    """Write Σ 2 Re[r/(ω − z)] over all poles at a real ω of either sign, shape (4,).
+def _split_channels(y: FloatArray, c: FloatArray) -> None:  # pragma: no cover
+    """Write y's parts on Le, Lh, Re, Rh: (4, 2, 8 · WIDTH), in the chiral basis.
 
-    A mirror image −z* has the residue −r̄* of the other incident charge.
+    The electrons' part of (c₊, c₋) is (c₊ + c₋, c₊ + c₋)/2, the holes' (c₊ − c₋, c₋ − c₊)/2.
     """
-    out[:] = 0.0
-    for k in range(z.size):
-        zr, zi = z[k].real, z[k].imag
-        norm = 2.0 / ((w - zr) ** 2 + zi * zi)
-        ar, ai = (w - zr) * norm, zi * norm
-        for c in range(4):
-            out[c] += ar * r[k, 0, c].real - ai * r[k, 0, c].imag
-        if k < paired:
-            norm = 2.0 / ((w + zr) ** 2 + zi * zi)
-            ar, ai = -(w + zr) * norm, zi * norm
-            for c in range(4):
-                out[c] += ar * r[k, 1, c].real - ai * r[k, 1, c].imag
+    W, half, zero = WIDTH, fill(0.5), fill(0.0)
+    for part in range(2):
+        for channel in range(4):
+            for i in range(8):
+                store(c[channel, part], i * W, zero)
+        for end in range(2):
+            for i in range(2):
+                at, to = (2 * end + i) * W, (4 + 2 * end + i) * W
+                p, q = load(y[part], at), load(y[part], to)
+                even, odd = half * (p + q), half * (p - q)
+                store(c[2 * end, part], at, even)
+                store(c[2 * end, part], to, even)
+                store(c[2 * end + 1, part], at, odd)
+                store(c[2 * end + 1, part], to, zero - odd)
+
+
+@nb.njit(cache=True, error_model="numpy")
+def _amplitudes(
+    levels: Levels, leads: Leads, b: Batch, c: FloatArray, p: FloatArray
+) -> None:  # pragma: no cover
+    """Write cᵀ_a [G(z*)]* c_b of the six PAIRS: (12, WIDTH), real parts, then imaginary parts."""
+    W = WIDTH
+    f, start = np.empty((4, 2, 8 * W)), np.zeros((12, W))
+    cubics(leads.conjugate, b.zr, b.zi, b.s)
+    reciprocals(b.zr, b.zi, levels.E, b.parts)
+    isolated_sums(levels, b.parts, b.re, b.im)
+    factor(b.s, b.re, b.im, b.pivots)
+    for channel in range(4):
+        g = f[channel]
+        of_ends(b.s[0], b.s[1], c[channel, 0], c[channel, 1], g[0], g[1])
+    for end in range(2):  # −c_a S̄ c_b, for channels on one end
+        re, im = fill(0.0), fill(0.0)
+        a, g = c[2 * end], f[2 * end + 1]
+        for i in range(4):
+            at = ENDS[end, i] * W
+            ar, ai, br, bi = load(a[0], at), load(a[1], at), load(g[0], at), load(g[1], at)
+            re, im = re - ar * br + ai * bi, im - ar * bi - ai * br
+        store(start[end], 0, re)
+        store(start[6 + end], 0, im)
+    for channel in range(4):
+        solve_lower(b.re, b.im, f[channel, 0], f[channel, 1])
+    for pair in range(6):
+        g, h = f[PAIRS[pair, 0]], f[PAIRS[pair, 1]]
+        re, im = load(start[pair], 0), load(start[6 + pair], 0)
+        for at in range(0, 8 * W, W):
+            ar, ai, br, bi = load(g[0], at), load(g[1], at), load(h[0], at), load(h[1], at)
+            dr, di = load(b.pivots[0], at), load(b.pivots[1], at)
+            qr, qi = ar * br - ai * bi, ar * bi + ai * br
+            re, im = re + qr * dr - qi * di, im + qr * di + qi * dr
+        store(p[pair], 0, re)
+        store(p[6 + pair], 0, im)
+
+
+@nb.njit(cache=True, error_model="numpy")
+def conductance_terms(
+    poles: Poles,
+    order: NDArray[np.int64],
+    paired: int,
+    levels: Levels,
+    leads: Leads,
+    b: Batch,
+) -> Terms:  # pragma: no cover
+    """Return the terms of the poles `order`, of which the first `paired` have mirror images."""
+    W = WIDTH
+    count = order.size
+    full = (count + W - 1) // W * W
+    out = Terms(np.zeros(full), np.full(full, -1.0), np.zeros((8, full)), np.zeros((8, full)))
+    y, c, p = np.empty((2, 8 * W)), np.empty((4, 2, 8 * W)), np.empty((12, W))
+    for first in range(0, count, W):
+        for l in range(W):
+            k = order[min(first + l, count - 1)]
+            b.zr[l], b.zi[l] = poles.z[k].real, poles.z[k].imag
+            b.norm[l], b.norm[W + l] = poles.norm[k].real, poles.norm[k].imag
+            for i in range(8):
+                b.t[0, i * W + l], b.t[1, i * W + l] = poles.t[k, i].real, poles.t[k, i].imag
+        _widths_seen(leads, b, y)
+        _split_channels(y, c)
+        _amplitudes(levels, leads, b, c, p)
+        for part in range(2):
+            to = out.re if part == 0 else out.im
+            q = p[6 * part :]
+            for l in range(min(W, count - first)):
+                al, ar, ee, hh, eh, he = q[0, l], q[1, l], q[2, l], q[3, l], q[4, l], q[5, l]
+                k = first + l
+                to[0, k], to[1, k] = 2 * al + ee + eh, 2 * ar + ee + he
+                to[2, k], to[3, k] = ee - he, ee - eh
+                if k < paired:
+                    to[4, k], to[5, k] = 2 * al + hh + he, 2 * ar + hh + eh
+                    to[6, k], to[7, k] = hh - eh, hh - he
+        for l in range(min(W, count - first)):
+            out.zr[first + l], out.zi[first + l] = b.zr[l], b.zi[l]
+    return out
+
+
+@nb.njit(cache=True, error_model="numpy")
+def sum_poles(omega: FloatArray, terms: Terms, out: FloatArray) -> None:  # pragma: no cover
+    """Write Σ 2 Re[r/(ω − z)] over all poles at real ω of either sign, shape (4, ω).
+
+    A mirror image −z* has the residue −r̄* of the other incident charge. The ω fill vectors.
+    """
+    W, two = WIDTH, fill(2.0)
+    for first in range(0, omega.size, W):
+        w = load(omega, first)
+        s0, s1, s2, s3 = fill(0.0), fill(0.0), fill(0.0), fill(0.0)
+        for k in range(terms.zr.size):
+            x, y = fill(terms.zr[k]), fill(terms.zi[k])
+            below, above, square = w - x, w + x, y * y
+            norm = two / (below * below + square)
+            c, d = below * norm, y * norm
+            s0 = s0 + c * fill(terms.re[0, k]) - d * fill(terms.im[0, k])
+            s1 = s1 + c * fill(terms.re[1, k]) - d * fill(terms.im[1, k])
+            s2 = s2 + c * fill(terms.re[2, k]) - d * fill(terms.im[2, k])
+            s3 = s3 + c * fill(terms.re[3, k]) - d * fill(terms.im[3, k])
+            norm = two / (above * above + square)
+            c, d = above * norm, y * norm
+            s0 = s0 - c * fill(terms.re[4, k]) - d * fill(terms.im[4, k])
+            s1 = s1 - c * fill(terms.re[5, k]) - d * fill(terms.im[5, k])
+            s2 = s2 - c * fill(terms.re[6, k]) - d * fill(terms.im[6, k])
+            s3 = s3 - c * fill(terms.re[7, k]) - d * fill(terms.im[7, k])
+        store(out[0], first, s0)
+        store(out[1], first, s1)
+        store(out[2], first, s2)
+        store(out[3], first, s3)

@@ -16,36 +16,64 @@ import numba as nb
 import numpy as np
 
 from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.physics.residues import Terms
+from disorder_landscape.physics.simd import WIDTH, fill, load, store
 
+SERIES = np.array([-691 / 2730, 5 / 66, -1 / 30, 1 / 42, -1 / 30, 1 / 6])
+"""Bernoulli's numbers B₁₂ … B₂, of Stirling's series."""
 REACH = 11.0
 """The nodes span this many kT beyond the largest |V|, where 2e-5 of the kernel is cut."""
 
 
-@nb.njit(cache=True, fastmath={"contract", "nsz", "reassoc"}, error_model="numpy")
-def trigamma(x: float, y: float) -> complex:  # pragma: no cover
-    """Return ψ₁(x + iy), x > 0, by recurrence and Stirling's series (DLMF 5.15.8), to 1e-12."""
-    re = im = 0.0
-    while x * x + y * y < 64.0:
-        norm = 1.0 / (x * x + y * y)
-        u, v = x * norm, -y * norm
-        re += u * u - v * v
-        im += 2 * u * v
-        x += 1.0
-    norm = 1.0 / (x * x + y * y)
-    i = complex(x * norm, -y * norm)
-    i2 = i * i
-    series = 1 / 6 - i2 * (
-        1 / 30 - i2 * (1 / 42 - i2 * (1 / 30 - i2 * (5 / 66 - i2 * (691 / 2730))))
-    )
-    return complex(re, im) + i + i2 * (0.5 + i * series)
+@nb.njit(cache=True, error_model="numpy")
+def trigamma(
+    x: FloatArray, y: FloatArray, re: FloatArray, im: FloatArray
+) -> None:  # pragma: no cover
+    """Write ψ₁(x + iy), x ≥ ½, of WIDTH numbers by recurrence and Stirling's series (DLMF 5.15.8), to 1e-12."""
+    one, two = fill(1.0), fill(2.0)
+    u, v = load(x, 0), load(y, 0)
+    total_re, total_im = fill(0.0), fill(0.0)
+    for _ in range(8):
+        norm = one / (u * u + v * v)
+        a, b = u * norm, v * norm
+        total_re, total_im = total_re + a * a - b * b, total_im - two * a * b
+        u = u + one
+    norm = one / (u * u + v * v)
+    a, b = u * norm, fill(0.0) - v * norm  # 1/z
+    c, d = a * a - b * b, two * a * b  # 1/z²
+    p, q = fill(SERIES[0]), fill(0.0)
+    for k in range(1, SERIES.size):
+        p, q = fill(SERIES[k]) + p * c - q * d, p * d + q * c
+    p, q = fill(0.5) + a * p - b * q, a * q + b * p
+    store(re, 0, total_re + a + c * p - d * q)
+    store(im, 0, total_im + b + c * q + d * p)
 
 
 @nb.njit(cache=True, error_model="numpy")
-def thermal_pole(z: complex, V: float, kT: float) -> complex:  # pragma: no cover
-    """Return ∫ dω (−f'(ω − V))/(ω − z), Im z < 0."""
+def average_poles(
+    terms: Terms, bias: FloatArray, kT: float, out: FloatArray
+) -> None:  # pragma: no cover
+    """Add the averages of Σ 2 Re[r/(ω − z)] to out, shape (bias, 4)."""
+    W = WIDTH
     unit = 1.0 / (2 * np.pi * kT)
-    psi = trigamma(0.5 - z.imag * unit, (z.real - V) * unit)
-    return complex(psi.imag * unit, -psi.real * unit)
+    x, y, re, im = np.empty(W), np.empty(W), np.empty(W), np.empty(W)
+    sums = np.empty((4, W))
+    for b in range(bias.size):
+        sums[:] = 0.0
+        for first in range(0, terms.zr.size, W):
+            store(x, 0, fill(0.5) - load(terms.zi, first) * fill(unit))
+            for hole in range(2):
+                V = -bias[b] if hole else bias[b]
+                store(y, 0, (load(terms.zr, first) - fill(V)) * fill(unit))
+                trigamma(x, y, re, im)
+                kr, ki = load(im, 0) * fill(2 * unit), load(re, 0) * fill(-2 * unit)
+                for c in range(4):
+                    row = 4 * hole + c
+                    rr, ri = load(terms.re[row], first), load(terms.im[row], first)
+                    store(sums[c], 0, load(sums[c], 0) + kr * rr - ki * ri)
+        for c in range(4):
+            for l in range(W):
+                out[b, c] += sums[c, l]
 
 
 def chebyshev_nodes(window: float, nodes: int) -> FloatArray:
@@ -93,15 +121,14 @@ def _interpolated(u: FloatArray, share: FloatArray, nodes: int) -> FloatArray:  
 
 def thermal_node_weights(
     bias: FloatArray, kT: float, window: float, nodes: int
-) -> tuple[FloatArray, FloatArray]:
-    """Return the weights of a smooth function's values at ω_k and at −ω_k, each (bias, node).
+) -> FloatArray:
+    """Return the weights of a smooth function's values at ω_k, then −ω_k, (bias, 2 · node).
 
     They average the polynomial through all 2·nodes values, and leave a constant as it is.
     """
     x, dx = _kernel_rule()
     u = np.clip((bias[:, None] + kT * x) / window, -1, 1)
-    weights = _interpolated(u, dx / dx.sum(), nodes)
-    return weights[:, :nodes].copy(), weights[:, nodes:].copy()
+    return np.asarray(_interpolated(u, dx / dx.sum(), nodes))
 
 
 def interpolation_weights(u: FloatArray, nodes: int) -> FloatArray:

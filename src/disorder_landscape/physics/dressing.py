@@ -1,0 +1,284 @@
+"""The isolated wire's ends and their leads at WIDTH complex energies at once.
+
+With the levels ±E of the isolated wire and what the ends see of them, U (`levels`),
+
+    G_iso(z) = Uᵀ-sums of 1/(z ∓ E),   S(z) = Σ(z)⁻¹,   M = S − G_iso,
+
+G_iso and Σ⁻¹ complex symmetric 8×8 in the chiral basis, S a cubic in the energy. M carries all that
+the leads do: (z − H)⁻¹ = R + R Uᵀ M⁻¹ U R with R = (z − E)⁻¹, and G = S M⁻¹ S − S. It is factored
+without pivots: its entries stay of order 1/Σ, also at the poles, because a level couples to the
+leads by the same U by which it stands in G_iso.
+
+Layout: as in `loewner`, entry k of energy l at [k·WIDTH + l]; real and imaginary parts are arrays
+of their own.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numba as nb
+import numpy as np
+from numpy.typing import NDArray
+
+from disorder_landscape.physics.hamiltonian import ComplexArray
+from disorder_landscape.physics.levels import invert
+from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.physics.simd import WIDTH, fill, load, store
+
+CUBIC = 4
+"""Nodes, and coefficients, of the cubic for Σ(ω)."""
+UPPER = 36
+"""Entries of the upper triangle of an 8×8 matrix."""
+ENDS = np.array([[0, 1, 4, 5], [2, 3, 6, 7]])
+"""Which entries of the chiral basis lie on which end."""
+
+
+@nb.njit(cache=True, inline="always")
+def place(i: int, j: int) -> int:  # pragma: no cover
+    """Return where entry (i, j) stands: C = ++ (10), −− (10), then +− (16)."""
+    a, b = min(i, j), max(i, j)
+    if b < 4:
+        return 4 * a - a * (a - 1) // 2 + b - a
+    if a >= 4:
+        a, b = a - 4, b - 4
+        return 10 + 4 * a - a * (a - 1) // 2 + b - a
+    return 20 + 4 * a + b - 4
+
+
+PLACES = np.array([[place.py_func(i, j) for j in range(8)] for i in range(8)])
+
+
+class Levels(NamedTuple):
+    """The levels and the products of their weights, as the sums here take them."""
+
+    E: FloatArray  # (level,)
+    weight: FloatArray  # (level, 8), what the ends see of ±E: with C = +1, over √2, and C = −1
+    products: FloatArray  # (level, UPPER): entries of w wᵀ, by `place`
+
+
+@nb.njit(cache=True)
+def level_products(E: FloatArray, weight: FloatArray) -> Levels:  # pragma: no cover
+    """Return what the sums need of the levels."""
+    n, size = weight.shape
+    half, products = np.empty((n, size)), np.empty((n, UPPER))
+    for k in range(n):
+        for i in range(size):
+            half[k, i] = np.sqrt(0.5) * weight[k, i]
+            for j in range(i, size):
+                products[k, PLACES[i, j]] = weight[k, i] * weight[k, j]
+    return Levels(E, half, products)
+
+
+class Leads(NamedTuple):
+    """The leads around the window, chiral basis: coefficients of 1, ω, ω², ω³, in meV."""
+
+    gamma: ComplexArray  # (CUBIC, 2, 4, 4), of Γ = −2 Im Σ at each end
+    inverse: ComplexArray  # (CUBIC, 2, 4, 4), of S = Σ⁻¹
+    conjugate: ComplexArray  # (CUBIC, 2, 4, 4), of S(z*)*
+
+
+@nb.njit(cache=True)
+def leads_between(cubic: FloatArray, sigma: ComplexArray) -> Leads:  # pragma: no cover
+    """Interpolate Σ, shape (CUBIC, 8, 8) at CUBIC energies; cubic: their inverse Vandermonde."""
+    shape = (CUBIC, 2, 4, 4)
+    gamma, inverse = np.zeros(shape, dtype=np.complex128), np.zeros(shape, dtype=np.complex128)
+    block = np.empty((4, 4), dtype=np.complex128)
+    for k in range(CUBIC):
+        for end in range(2):
+            for i in range(4):
+                for j in range(4):
+                    block[i, j] = sigma[k, ENDS[end, i], ENDS[end, j]]
+            for power in range(CUBIC):
+                for i in range(4):
+                    for j in range(4):
+                        gamma[power, end, i, j] -= 2 * cubic[power, k] * block[i, j].imag
+            invert(block)
+            for power in range(CUBIC):
+                for i in range(4):
+                    for j in range(4):
+                        inverse[power, end, i, j] += cubic[power, k] * block[i, j]
+    return Leads(gamma, inverse, np.conj(inverse))
+
+
+@nb.njit(cache=True, error_model="numpy")
+def reciprocals(
+    zr: FloatArray, zi: FloatArray, E: FloatArray, parts: FloatArray
+) -> None:  # pragma: no cover
+    """Write 1/(z − E) and 1/(z + E), then half their sum and difference; (8, level · WIDTH)."""
+    W = WIDTH
+    x, y, one, half = load(zr, 0), load(zi, 0), fill(1.0), fill(0.5)
+    p, q, r, s = parts[0], parts[1], parts[2], parts[3]
+    even_re, even_im, odd_re, odd_im = parts[4], parts[5], parts[6], parts[7]
+    square, minus = y * y, fill(0.0) - y
+    for n in range(E.size):
+        level, at = fill(E[n]), n * W
+        below, above = x - level, x + level
+        near, far = one / (below * below + square), one / (above * above + square)
+        a, b, c, d = below * near, minus * near, above * far, minus * far
+        store(p, at, a)
+        store(q, at, b)
+        store(r, at, c)
+        store(s, at, d)
+        store(even_re, at, half * (a + c))
+        store(even_im, at, half * (b + d))
+        store(odd_re, at, half * (a - c))
+        store(odd_im, at, half * (b - d))
+
+
+@nb.njit(cache=True, error_model="numpy")
+def isolated_sums(
+    levels: Levels, parts: FloatArray, re: FloatArray, im: FloatArray
+) -> None:  # pragma: no cover
+    """Write G_iso, shape (UPPER · WIDTH,) each, from `reciprocals`; four entries per pass."""
+    W, zero = WIDTH, fill(0.0)
+    products = levels.products
+    for e in range(0, UPPER, 4):
+        real, imag = (parts[4], parts[5]) if e < 20 else (parts[6], parts[7])
+        a, b, c, d = zero, zero, zero, zero
+        f, g, h, k = zero, zero, zero, zero
+        for n in range(levels.E.size):
+            row, x, y = products[n], load(real, n * W), load(imag, n * W)
+            q, r, s, t = fill(row[e]), fill(row[e + 1]), fill(row[e + 2]), fill(row[e + 3])
+            a, b, c, d = a + q * x, b + r * x, c + s * x, d + t * x
+            f, g, h, k = f + q * y, g + r * y, h + s * y, k + t * y
+        store(re, e * W, a)
+        store(re, (e + 1) * W, b)
+        store(re, (e + 2) * W, c)
+        store(re, (e + 3) * W, d)
+        store(im, e * W, f)
+        store(im, (e + 1) * W, g)
+        store(im, (e + 2) * W, h)
+        store(im, (e + 3) * W, k)
+
+
+@nb.njit(cache=True, error_model="numpy")
+def cubics(
+    terms: ComplexArray, zr: FloatArray, zi: FloatArray, parts: FloatArray
+) -> None:  # pragma: no cover
+    """Write a cubic's values and slopes: (4, 20 · WIDTH), re, im, re, im, ten entries per end."""
+    W = WIDTH
+    x, y, two = load(zr, 0), load(zi, 0), fill(2.0)
+    re, im, slope_re, slope_im = parts[0], parts[1], parts[2], parts[3]
+    for end in range(2):
+        at = 10 * end * W
+        for i in range(4):
+            for j in range(i, 4):
+                a, b = terms[3, end, i, j], terms[2, end, i, j]
+                c, d = terms[1, end, i, j], terms[0, end, i, j]
+                ar, ai = fill(a.real), fill(a.imag)
+                br, bi = fill(b.real), fill(b.imag)
+                pr, pi = ar * x - ai * y + br, ar * y + ai * x + bi  # az + b
+                cr, ci = fill(c.real), fill(c.imag)
+                qr, qi = pr * x - pi * y + cr, pr * y + pi * x + ci  # az² + bz + c
+                store(re, at, qr * x - qi * y + fill(d.real))
+                store(im, at, qr * y + qi * x + fill(d.imag))
+                pr, pi = ar * x - ai * y + pr, ar * y + ai * x + pi  # 2az + b
+                store(slope_re, at, qr + pr * x - pi * y)
+                store(slope_im, at, qi + pr * y + pi * x)
+                at += W
+
+
+@nb.njit(cache=True, error_model="numpy")
+def factor(
+    s: FloatArray, re: FloatArray, im: FloatArray, pivots: FloatArray
+) -> None:  # pragma: no cover
+    """Turn G_iso into L and the reciprocals of Δ, S − G_iso = LΔLᵀ; s: from `cubics`.
+
+    Lower entries of L stand at the places of the upper triangle; pivots: (2, 8 · WIDTH).
+    """
+    W, one = WIDTH, fill(1.0)
+    size = pivots.shape[1] // W  # 8, but not for the compiler: it would unroll everything
+    for at in range(0, UPPER * W, W):
+        store(re, at, fill(0.0) - load(re, at))
+        store(im, at, fill(0.0) - load(im, at))
+    source = 0
+    for end in range(2):
+        for i in range(4):
+            for j in range(i, 4):
+                at = PLACES[ENDS[end, i], ENDS[end, j]] * W
+                store(re, at, load(re, at) + load(s[0], source))
+                store(im, at, load(im, at) + load(s[1], source))
+                source += W
+    for k in range(size):
+        at = PLACES[k, k] * W
+        dr, di = load(re, at), load(im, at)
+        norm = one / (dr * dr + di * di)
+        dr, di = dr * norm, fill(0.0) - di * norm
+        store(pivots[0], k * W, dr)
+        store(pivots[1], k * W, di)
+        for i in range(k + 1, size):
+            at = PLACES[k, i] * W
+            ar, ai = load(re, at), load(im, at)
+            lr, li = ar * dr - ai * di, ar * di + ai * dr
+            for j in range(i, size):
+                fr, fi = load(re, PLACES[k, j] * W), load(im, PLACES[k, j] * W)
+                to = PLACES[i, j] * W
+                store(re, to, load(re, to) - lr * fr + li * fi)
+                store(im, to, load(im, to) - lr * fi - li * fr)
+        for i in range(k + 1, size):
+            at = PLACES[k, i] * W
+            ar, ai = load(re, at), load(im, at)
+            store(re, at, ar * dr - ai * di)
+            store(im, at, ar * di + ai * dr)
+
+
+@nb.njit(cache=True, error_model="numpy")
+def solve_lower(
+    re: FloatArray, im: FloatArray, xr: FloatArray, xi: FloatArray
+) -> None:  # pragma: no cover
+    """Replace x, shape (8 · WIDTH,), by L⁻¹x."""
+    W = WIDTH
+    size = xr.size // W
+    for i in range(1, size):
+        a, b = load(xr, i * W), load(xi, i * W)
+        for k in range(i):
+            at = PLACES[k, i] * W
+            lr, li, c, d = load(re, at), load(im, at), load(xr, k * W), load(xi, k * W)
+            a, b = a - lr * c + li * d, b - lr * d - li * c
+        store(xr, i * W, a)
+        store(xi, i * W, b)
+
+
+@nb.njit(cache=True, error_model="numpy")
+def solve(
+    re: FloatArray, im: FloatArray, pivots: FloatArray, xr: FloatArray, xi: FloatArray
+) -> None:  # pragma: no cover
+    """Replace x, shape (8 · WIDTH,), by M⁻¹x."""
+    W = WIDTH
+    size = xr.size // W
+    solve_lower(re, im, xr, xi)
+    for i in range(size - 1, -1, -1):
+        c, d = load(xr, i * W), load(xi, i * W)
+        pr, pi = load(pivots[0], i * W), load(pivots[1], i * W)
+        a, b = c * pr - d * pi, c * pi + d * pr
+        for k in range(i + 1, size):
+            at = PLACES[i, k] * W
+            lr, li, c, d = load(re, at), load(im, at), load(xr, k * W), load(xi, k * W)
+            a, b = a - lr * c + li * d, b - lr * d - li * c
+        store(xr, i * W, a)
+        store(xi, i * W, b)
+
+
+@nb.njit(cache=True, error_model="numpy")
+def of_ends(
+    s_re: FloatArray,
+    s_im: FloatArray,
+    xr: FloatArray,
+    xi: FloatArray,
+    yr: FloatArray,
+    yi: FloatArray,
+) -> None:  # pragma: no cover
+    """Write S x, for S (20 · WIDTH,) from `cubics` and x, y of shape (8 · WIDTH,)."""
+    W = WIDTH
+    for end in range(2):
+        for i in range(4):
+            a, b = fill(0.0), fill(0.0)
+            for j in range(4):
+                low, high = min(i, j), max(i, j)
+                at = (10 * end + 4 * low - low * (low - 1) // 2 + high - low) * W
+                to = ENDS[end, j] * W
+                sr, si, c, d = load(s_re, at), load(s_im, at), load(xr, to), load(xi, to)
+                a, b = a + sr * c - si * d, b + sr * d + si * c
+            store(yr, ENDS[end, i] * W, a)
+            store(yi, ENDS[end, i] * W, b)

@@ -1,0 +1,260 @@
+"""Poles of the wire with its leads, by inverse iteration on H(z), WIDTH poles at once.
+
+In the space of the levels this is H(z) = E + UᵀΣ(z)U, with the levels ±E and what the ends see of
+them, U. One step takes x to (z − H)⁻¹x = R x + R Uᵀ t, M t = U R x (`dressing`), and z to
+
+    z − x_newᵀ x_old / x_newᵀ(1 − H')x_new,    xᵀ(1 − H')x = xᵀx + tᵀS't,
+
+the symmetric Rayleigh quotient (no conjugation), which converges cubically: with the starts of
+`resonances` the second step moves poles by less than CONVERGED in nearly all sets. No expansion in
+the coupling is left. As U x_new = S t, a pole's v, G ≈ v vᵀ/(ω − z), needs no further sum.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numba as nb
+import numpy as np
+
+from disorder_landscape.physics.dressing import (
+    ENDS,
+    Leads,
+    Levels,
+    cubics,
+    factor,
+    isolated_sums,
+    reciprocals,
+    solve,
+)
+from disorder_landscape.physics.hamiltonian import ComplexArray
+from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.physics.simd import WIDTH, fill, load, store
+
+FAINT = 1e-9
+"""Widths below this (meV) carry no conductance and need no digits."""
+STEPS = 2
+"""Steps of a batch before it is looked at."""
+ROUNDS = 6
+"""Most batches per pole."""
+CONVERGED = 3e-4
+"""A pole that moves by less than this part of its width has converged: cubically, 1e-11 is left."""
+
+
+class Batch(NamedTuple):
+    """WIDTH poles, and room to work on them."""
+
+    zr: FloatArray  # (WIDTH,)
+    zi: FloatArray
+    moved: FloatArray  # (WIDTH,), by the last step, over the width
+    x: FloatArray  # (4, level · WIDTH), over +E and over −E: re, im, re, im
+    scale: FloatArray  # (WIDTH,), of x, against overflow
+    t: FloatArray  # (2, 8 · WIDTH)
+    norm: FloatArray  # (2 · WIDTH,), xᵀ(1 − H')x: re, im
+    parts: FloatArray  # (8, level · WIDTH), see `reciprocals`
+    s: FloatArray  # (4, 20 · WIDTH), see `cubics`
+    re: FloatArray  # (UPPER · WIDTH,)
+    im: FloatArray
+    pivots: FloatArray  # (2, 8 · WIDTH)
+
+
+@nb.njit(cache=True)
+def new_batch(levels: int) -> Batch:  # pragma: no cover
+    """Return room for WIDTH poles."""
+    W = WIDTH
+    return Batch(
+        np.empty(W),
+        np.empty(W),
+        np.empty(W),
+        np.empty((4, levels * W)),
+        np.empty(W),
+        np.empty((2, 8 * W)),
+        np.empty(2 * W),
+        np.empty((8, levels * W)),
+        np.empty((4, 20 * W)),
+        np.empty(36 * W),
+        np.empty(36 * W),
+        np.empty((2, 8 * W)),
+    )
+
+
+@nb.njit(cache=True, error_model="numpy")
+def _apply_resolvent(levels: Levels, b: Batch) -> None:  # pragma: no cover
+    """Replace x by R x, keep x in parts that are no longer needed; write U R x to t."""
+    W, zero = WIDTH, fill(0.0)
+    share = load(b.scale, 0)
+    a0, a1, a2, a3, a4, a5, a6, a7 = zero, zero, zero, zero, zero, zero, zero, zero
+    c0, c1, c2, c3, c4, c5, c6, c7 = zero, zero, zero, zero, zero, zero, zero, zero
+    x0, x1, x2, x3 = b.x[0], b.x[1], b.x[2], b.x[3]
+    p0, p1, p2, p3 = b.parts[0], b.parts[1], b.parts[2], b.parts[3]
+    o0, o1, o2, o3 = b.parts[4], b.parts[5], b.parts[6], b.parts[7]
+    for n in range(levels.E.size):
+        at, w = n * W, levels.weight[n]
+        re, im = load(x0, at) * share, load(x1, at) * share
+        store(o0, at, re)
+        store(o1, at, im)
+        pr, pi = load(p0, at), load(p1, at)
+        ur, ui = re * pr - im * pi, re * pi + im * pr
+        re, im = load(x2, at) * share, load(x3, at) * share
+        store(o2, at, re)
+        store(o3, at, im)
+        pr, pi = load(p2, at), load(p3, at)
+        dr, di = re * pr - im * pi, re * pi + im * pr
+        store(x0, at, ur)
+        store(x1, at, ui)
+        store(x2, at, dr)
+        store(x3, at, di)
+        re, im = ur + dr, ui + di
+        w0, w1, w2, w3 = fill(w[0]), fill(w[1]), fill(w[2]), fill(w[3])
+        a0, a1, a2, a3 = a0 + w0 * re, a1 + w1 * re, a2 + w2 * re, a3 + w3 * re
+        c0, c1, c2, c3 = c0 + w0 * im, c1 + w1 * im, c2 + w2 * im, c3 + w3 * im
+        re, im = ur - dr, ui - di
+        w0, w1, w2, w3 = fill(w[4]), fill(w[5]), fill(w[6]), fill(w[7])
+        a4, a5, a6, a7 = a4 + w0 * re, a5 + w1 * re, a6 + w2 * re, a7 + w3 * re
+        c4, c5, c6, c7 = c4 + w0 * im, c5 + w1 * im, c6 + w2 * im, c7 + w3 * im
+    tr, ti = b.t[0], b.t[1]
+    store(tr, 0, a0)
+    store(tr, W, a1)
+    store(tr, 2 * W, a2)
+    store(tr, 3 * W, a3)
+    store(tr, 4 * W, a4)
+    store(tr, 5 * W, a5)
+    store(tr, 6 * W, a6)
+    store(tr, 7 * W, a7)
+    store(ti, 0, c0)
+    store(ti, W, c1)
+    store(ti, 2 * W, c2)
+    store(ti, 3 * W, c3)
+    store(ti, 4 * W, c4)
+    store(ti, 5 * W, c5)
+    store(ti, 6 * W, c6)
+    store(ti, 7 * W, c7)
+
+
+@nb.njit(cache=True, error_model="numpy")
+def _add_mixed(levels: Levels, b: Batch, overlap: FloatArray) -> None:  # pragma: no cover
+    """Add R Uᵀ t to x; write xᵀx to norm and its product with the x kept to overlap."""
+    W = WIDTH
+    tr, ti = b.t[0], b.t[1]
+    r0, r1, r2, r3 = load(tr, 0), load(tr, W), load(tr, 2 * W), load(tr, 3 * W)
+    r4, r5, r6, r7 = load(tr, 4 * W), load(tr, 5 * W), load(tr, 6 * W), load(tr, 7 * W)
+    i0, i1, i2, i3 = load(ti, 0), load(ti, W), load(ti, 2 * W), load(ti, 3 * W)
+    i4, i5, i6, i7 = load(ti, 4 * W), load(ti, 5 * W), load(ti, 6 * W), load(ti, 7 * W)
+    x0, x1, x2, x3 = b.x[0], b.x[1], b.x[2], b.x[3]
+    p0, p1, p2, p3 = b.parts[0], b.parts[1], b.parts[2], b.parts[3]
+    o0, o1, o2, o3 = b.parts[4], b.parts[5], b.parts[6], b.parts[7]
+    norm_re, norm_im, over_re, over_im = fill(0.0), fill(0.0), fill(0.0), fill(0.0)
+    for n in range(levels.E.size):
+        at, w = n * W, levels.weight[n]
+        w0, w1, w2, w3 = fill(w[0]), fill(w[1]), fill(w[2]), fill(w[3])
+        er, ei = w0 * r0 + w1 * r1 + w2 * r2 + w3 * r3, w0 * i0 + w1 * i1 + w2 * i2 + w3 * i3
+        w0, w1, w2, w3 = fill(w[4]), fill(w[5]), fill(w[6]), fill(w[7])
+        fr, fi = w0 * r4 + w1 * r5 + w2 * r6 + w3 * r7, w0 * i4 + w1 * i5 + w2 * i6 + w3 * i7
+        pr, pi, re, im = load(p0, at), load(p1, at), er + fr, ei + fi
+        ur, ui = load(x0, at) + re * pr - im * pi, load(x1, at) + re * pi + im * pr
+        pr, pi, re, im = load(p2, at), load(p3, at), er - fr, ei - fi
+        dr, di = load(x2, at) + re * pr - im * pi, load(x3, at) + re * pi + im * pr
+        store(x0, at, ur)
+        store(x1, at, ui)
+        store(x2, at, dr)
+        store(x3, at, di)
+        norm_re = norm_re + ur * ur - ui * ui + dr * dr - di * di
+        norm_im = norm_im + ur * ui + dr * di
+        pr, pi, re, im = load(o0, at), load(o1, at), load(o2, at), load(o3, at)
+        over_re = over_re + ur * pr - ui * pi + dr * re - di * im
+        over_im = over_im + ur * pi + ui * pr + dr * im + di * re
+    store(b.norm, 0, norm_re)
+    store(b.norm, W, norm_im + norm_im)
+    store(overlap, 0, over_re)
+    store(overlap, W, over_im)
+
+
+@nb.njit(cache=True, error_model="numpy")
+def _add_slope(b: Batch) -> None:  # pragma: no cover
+    """Add tᵀS't to the norm."""
+    W, two = WIDTH, fill(2.0)
+    re, im = load(b.norm, 0), load(b.norm, W)
+    tr, ti, slope_re, slope_im = b.t[0], b.t[1], b.s[2], b.s[3]
+    at = 0
+    for end in range(2):
+        for i in range(4):
+            ar, ai = load(tr, ENDS[end, i] * W), load(ti, ENDS[end, i] * W)
+            for j in range(i, 4):
+                cr, ci = load(tr, ENDS[end, j] * W), load(ti, ENDS[end, j] * W)
+                pr, pi = ar * cr - ai * ci, ar * ci + ai * cr
+                sr, si = load(slope_re, at), load(slope_im, at)
+                if i != j:
+                    pr, pi = two * pr, two * pi
+                re, im = re + sr * pr - si * pi, im + sr * pi + si * pr
+                at += W
+    store(b.norm, 0, re)
+    store(b.norm, W, im)
+
+
+@nb.njit(cache=True, error_model="numpy")
+def _step(levels: Levels, leads: Leads, b: Batch, overlap: FloatArray) -> None:  # pragma: no cover
+    """Improve the poles and their vectors."""
+    W = WIDTH
+    reciprocals(b.zr, b.zi, levels.E, b.parts)
+    isolated_sums(levels, b.parts, b.re, b.im)
+    cubics(leads.inverse, b.zr, b.zi, b.s)
+    factor(b.s, b.re, b.im, b.pivots)
+    _apply_resolvent(levels, b)
+    solve(b.re, b.im, b.pivots, b.t[0], b.t[1])
+    _add_mixed(levels, b, overlap)
+    _add_slope(b)
+    for l in range(W):
+        norm = complex(b.norm[l], b.norm[W + l])
+        shift = complex(overlap[l], overlap[W + l]) / norm
+        zi = min(b.zi[l] - shift.imag, -1e-16)
+        b.moved[l] = abs(complex(shift.real, b.zi[l] - zi)) / (FAINT - zi)
+        b.zr[l] -= shift.real
+        b.zi[l] = zi
+        b.scale[l] = 1.0 / np.sqrt(abs(norm))
+
+
+class Poles(NamedTuple):
+    """Poles z with their vectors: G ≈ v vᵀ/(ω − z), v = S t/√norm."""
+
+    z: ComplexArray  # (pole,)
+    x: FloatArray  # (pole, 4, level), over +E and over −E: re, im, re, im
+    t: ComplexArray  # (pole, 8)
+    norm: ComplexArray  # (pole,), xᵀ(1 − H')x
+
+
+@nb.njit(cache=True, error_model="numpy")
+def iterate(poles: Poles, levels: Levels, leads: Leads, b: Batch) -> None:  # pragma: no cover
+    """Iterate poles and vectors in place, from approximate z and x (`resonances.start_poles`)."""
+    W, count, size = WIDTH, poles.z.size, levels.E.size
+    overlap = np.empty(2 * W)
+    active, left = np.arange(count), count
+    for _ in range(ROUNDS):
+        waiting, left = left, 0
+        for first in range(0, waiting, W):
+            some = min(W, waiting - first)
+            for l in range(W):
+                p = active[first + min(l, some - 1)]
+                b.zr[l], b.zi[l], b.scale[l] = poles.z[p].real, poles.z[p].imag, 1.0
+                x = poles.x[p]
+                for part in range(4):
+                    for n in range(size):
+                        b.x[part, n * W + l] = x[part, n]
+            for _ in range(STEPS):
+                _step(levels, leads, b, overlap)
+            for l in range(some):
+                p = active[first + l]
+                x = poles.x[p]
+                for part in range(4):
+                    for n in range(size):
+                        x[part, n] = b.x[part, n * W + l] * b.scale[l]
+                for i in range(8):
+                    t = complex(b.t[0, i * W + l], b.t[1, i * W + l])
+                    poles.t[p, i] = t * b.scale[l]
+                norm = complex(b.norm[l], b.norm[W + l])
+                poles.norm[p] = norm * b.scale[l] ** 2
+                poles.z[p] = complex(b.zr[l], b.zi[l])
+                if not b.moved[l] <= CONVERGED:
+                    active[left] = p
+                    left += 1
+        if left == 0:
+            break

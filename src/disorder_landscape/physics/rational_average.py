@@ -1,0 +1,182 @@
+"""One set's thermal average from its levels: poles, residues, closed form, and how sure it is.
+
+What is left of the conductance beside its poles is smooth; the polynomial through its values at the
+nodes is averaged exactly. Two comparisons with the solver at further energies give the error.
+"""
+
+from __future__ import annotations
+
+import numba as nb
+import numpy as np
+
+from disorder_landscape.physics.dressing import (
+    Leads,
+    Levels,
+    cubics,
+    factor,
+    isolated_sums,
+    level_products,
+    of_ends,
+    reciprocals,
+    solve_lower,
+)
+from disorder_landscape.physics.energy_plan import CHECKS, EnergyPlan
+from disorder_landscape.physics.hamiltonian import ComplexArray
+from disorder_landscape.physics.inverse_iteration import Batch, iterate, new_batch
+from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.physics.residues import Terms, conductance_terms, sum_poles
+from disorder_landscape.physics.resonances import right_half, start_poles
+from disorder_landscape.physics.simd import WIDTH, fill, load, store
+from disorder_landscape.physics.thermal_poles import average_poles
+
+ROUGHNESS = 10.0
+"""Estimated error over the smooth part's largest mismatch at the checks."""
+SAFETY = 300.0
+"""Estimated error over the model's largest mismatch, times t', at the checks."""
+
+
+@nb.njit(cache=True, error_model="numpy")
+def rational_average(
+    plan: EnergyPlan,
+    hop: float,
+    E: FloatArray,
+    weight: FloatArray,
+    isolated: FloatArray,
+    leads: Leads,
+    green: ComplexArray,
+    bare: FloatArray,
+    out: FloatArray,
+) -> float:  # pragma: no cover
+    """Write the thermal conductances of one set, shape (bias, 4); return the error estimate.
+
+    Parameters
+    ----------
+    plan : EnergyPlan
+    hop : float
+        t' in meV.
+    E, weight : arrays, shapes (level,) and (level, 8)
+        From `wire_levels`.
+    isolated : array, shape (8, 8)
+        G of the isolated wire at the second of the picked nodes, chiral basis, 1/meV.
+    leads : Leads
+    green : array, shape (CHECKS, 8, 8)
+        G with the leads attached at the checks, chiral basis, 1/meV.
+    bare : array, shape (node + CHECKS, 2, 4)
+        Conductances at ±ω.
+    out : array, shape (bias, 4)
+    """
+    m = plan.nodes
+    levels, b = level_products(E, weight), new_batch(E.size)
+    omega = plan.omega[plan.picks[1]]
+    poles, both = start_poles(omega, isolated, plan.window, hop, E, weight, leads)
+    iterate(poles, levels, leads, b)
+    order, paired = right_half(poles, leads)
+    if paired + order.size != both:  # a pole was lost, or met twice
+        return np.inf
+    terms = conductance_terms(poles, order, paired, levels, leads, b)
+    smooth = np.empty((4, plan.signed.size))
+    sum_poles(plan.signed, terms, smooth)
+    for c in range(4):
+        for sign in range(2):
+            for k in range(m):
+                at = sign * m + k
+                smooth[c, at] = bare[k, sign, c] - smooth[c, at]
+            for k in range(CHECKS):
+                at = 2 * m + sign * CHECKS + k
+                smooth[c, at] = bare[m + k, sign, c] - smooth[c, at]
+        for v in range(plan.bias.size):
+            total = 0.0
+            for at in range(2 * m):
+                total += plan.weights[v, at] * smooth[c, at]
+            out[v, c] = total
+    average_poles(terms, plan.bias, plan.kT, out)
+    counts = _shares_that_count(plan, terms)
+    of_model = SAFETY * hop * _mismatch(plan, levels, leads, green, counts, b)
+    rough = ROUGHNESS * _roughness(plan, smooth, counts)
+    return float(of_model if of_model > rough else rough)
+
+
+@nb.njit(cache=True, error_model="numpy")
+def _shares_that_count(plan: EnergyPlan, terms: Terms) -> FloatArray:  # pragma: no cover
+    """Return what part of a difference at each check the average can have.
+
+    A pole misplaced by δ shows as v²δ/(ω − z)² and counts as v²δ/(kT)² in the average: so a
+    difference is scaled down where a pole is nearer than kT.
+    """
+    shares = np.empty(CHECKS)
+    for k in range(CHECKS):
+        nearest = plan.kT**2
+        for n in range(terms.zr.size):
+            apart = (plan.omega[plan.nodes + k] - terms.zr[n]) ** 2 + terms.zi[n] ** 2
+            nearest = min(nearest, apart)
+        shares[k] = nearest / plan.kT**2
+    return shares
+
+
+@nb.njit(cache=True, error_model="numpy")
+def _roughness(
+    plan: EnergyPlan, smooth: FloatArray, shares: FloatArray
+) -> float:  # pragma: no cover
+    """Return how far the smooth part's polynomial is off at the checks, in e²/h.
+
+    A pole that was lost, or counted twice, leaves its peak in what should be smooth.
+    """
+    m, worst = plan.nodes, 0.0
+    for k in range(2 * CHECKS):
+        for c in range(4):
+            value = -smooth[c, 2 * m + k]
+            for n in range(2 * m):
+                value += plan.at_checks[k, n] * smooth[c, n]
+            value = abs(value) * shares[k % CHECKS]
+            if not value <= worst:  # so that NaN counts
+                worst = value
+    return worst
+
+
+@nb.njit(cache=True, error_model="numpy")
+def _mismatch(
+    plan: EnergyPlan,
+    levels: Levels,
+    leads: Leads,
+    green: ComplexArray,
+    shares: FloatArray,
+    b: Batch,
+) -> float:  # pragma: no cover
+    """Return the largest difference of the model's G and the solver's at the checks, in 1/meV."""
+    W = WIDTH
+    for l in range(W):
+        b.zr[l], b.zi[l] = plan.omega[plan.nodes + min(l, CHECKS - 1)], 0.0
+    reciprocals(b.zr, b.zi, levels.E, b.parts)
+    isolated_sums(levels, b.parts, b.re, b.im)
+    cubics(leads.inverse, b.zr, b.zi, b.s)
+    factor(b.s, b.re, b.im, b.pivots)
+    unit, f = np.zeros((2, 8 * W)), np.empty((8, 2, 8 * W))
+    for j in range(8):
+        unit[0, j * W : (j + 1) * W] = 1.0
+        of_ends(b.s[0], b.s[1], unit[0], unit[1], f[j, 0], f[j, 1])
+        unit[0, j * W : (j + 1) * W] = 0.0
+    same_end = f.copy()  # S
+    for j in range(8):
+        solve_lower(b.re, b.im, f[j, 0], f[j, 1])
+    worst, here = 0.0, np.empty((2, W))
+    for i in range(8):
+        for j in range(i, 8):
+            at = i * W
+            re, im = fill(0.0) - load(same_end[j, 0], at), fill(0.0) - load(same_end[j, 1], at)
+            for at in range(0, 8 * W, W):
+                ar, ai, br, bi = (
+                    load(f[i, 0], at),
+                    load(f[i, 1], at),
+                    load(f[j, 0], at),
+                    load(f[j, 1], at),
+                )
+                dr, di = load(b.pivots[0], at), load(b.pivots[1], at)
+                qr, qi = ar * br - ai * bi, ar * bi + ai * br
+                re, im = re + qr * dr - qi * di, im + qr * di + qi * dr
+            store(here[0], 0, re)
+            store(here[1], 0, im)
+            for k in range(CHECKS):
+                off = abs(complex(here[0, k], here[1, k]) - green[k, i, j]) * shares[k]
+                if not off <= worst:  # so that NaN counts
+                    worst = off
+    return worst
