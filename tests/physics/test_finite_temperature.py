@@ -1,26 +1,17 @@
-"""The exact thermal average: against the adaptive integral, and the parts it is made of."""
+"""The exact thermal average: against the adaptive integral, and against itself."""
 
 import numba
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from scipy.integrate import quad
-from scipy.linalg import eigh
-from scipy.optimize import brentq
-from scipy.special import polygamma
 
 import disorder_landscape as dl
 from disorder_landscape.arguments import ArgumentError
-from disorder_landscape.physics import eigen, finite_temperature, jacobi, thermal_poles
-from disorder_landscape.physics.fast_solver import prepare
-from disorder_landscape.physics.hamiltonian import wire_hamiltonian
-from disorder_landscape.physics.levels import wire_levels
-from disorder_landscape.physics.parameters import BIAS, BOLTZMANN
+from disorder_landscape.physics import energy_plan, finite_temperature
+from disorder_landscape.physics.parameters import BIAS
 from disorder_landscape.physics.quadrature import thermal_quadrature
 from disorder_landscape.physics.transport import exact_average
 from random_wires import random_wire
-
-KT = BOLTZMANN * 0.05
 
 
 def point(seed):
@@ -49,74 +40,6 @@ def test_two_poles_that_have_just_left_the_imaginary_axis():
     found, estimate, _ = exact_average([random_wire(5, sites=100)], *arguments)
     exact = thermal_quadrature([random_wire(5, sites=100)], *arguments)
     assert abs(found - exact.conductance).max() <= estimate.item() + exact.error.item()
-
-
-def test_trigamma_on_the_real_axis():
-    x = np.concatenate([np.geomspace(1e-3, 1e3, 60), [0.5, 7.999, 8.0]])
-    found = np.array([thermal_poles.trigamma(value, 0.0) for value in x])
-    assert_allclose(found.real, polygamma(1, x), rtol=1e-12)
-    assert_allclose(found.imag, 0, atol=1e-15)
-
-
-def test_trigamma_by_recurrence_and_reflection():
-    rng = np.random.default_rng(0)
-    for x, y in zip(rng.uniform(0.01, 0.99, 50), rng.uniform(-12, 12, 50), strict=True):
-        z, here = complex(x, y), thermal_poles.trigamma(x, y)
-        assert_allclose(thermal_poles.trigamma(x + 1, y) + z**-2, here, rtol=1e-11)
-        mirrored = (np.pi / np.sin(np.pi * z)) ** 2 - here
-        assert_allclose(thermal_poles.trigamma(1 - x, -y), mirrored, atol=1e-11 * abs(here))
-        assert_allclose(thermal_poles.trigamma(x, -y), np.conj(here), rtol=1e-14)
-
-
-@pytest.mark.parametrize("z", [0.02 - 0.004j, -0.01 - 2e-4j, 0.0 - 0.03j, 0.3 - 1e-3j])
-@pytest.mark.parametrize("V", [0.0, 0.025])
-def test_the_thermal_average_of_a_pole(z, V):
-    def part(name):
-        def integrand(x):
-            return getattr(np.cosh((x - V) / (2 * KT)) ** -2 / (4 * KT * (x - z)), name)
-
-        ends = V - 40 * KT, V + 40 * KT
-        near = z.real + z.imag * np.array([-10, -1, 0, 1, 10])
-        return quad(integrand, *ends, points=[*near, V], limit=500, epsabs=1e-10)[0]
-
-    expected = complex(part("real"), part("imag"))
-    assert_allclose(thermal_poles.thermal_pole(z, V, KT), expected, rtol=1e-9)
-
-
-@pytest.mark.parametrize(("mu", "B"), [(0.3, 0.0), (0.2, 0.5), (0.5, 0.3)])
-def test_the_levels_are_those_of_the_hamiltonian(mu, B):
-    """Which depends on the energy: E is a level where H(E) has the eigenvalue E."""
-    wire = random_wire(2, sites=60)
-    plan = finite_temperature._plan([wire], np.array(BIAS), KT, 12)
-    m, total = plan.nodes, plan.omega.size
-    chunk = finite_temperature.CHUNK
-    data = finite_temperature._Solved(
-        np.empty((chunk, m, 8, 8)),
-        np.empty((chunk, m, 8, 8)),
-        np.empty((chunk, total, 8, 8), dtype=complex),
-        np.empty((chunk, m, 2, 4)),
-        np.empty(chunk),
-    )
-    problem = prepare([wire], np.array([mu]), np.array([B]), plan.omega)
-    finite_temperature._solve(problem, plan, 0, 0, np.arange(1), data)
-    E, weight = np.empty(8 * m), np.empty((8 * m, 8))
-    count = wire_levels(
-        plan.omega[:m], data.isolated[0], data.slope[0], E, weight, finite_temperature.DROP
-    )
-
-    def eigenvalues(omega):
-        return np.linalg.eigvalsh(wire_hamiltonian(wire, mu, B, omega))
-
-    def above(omega, n):
-        return eigenvalues(omega)[n] - omega
-
-    at_zero, at_window = eigenvalues(0.0), eigenvalues(plan.window) - plan.window
-    crossing = np.flatnonzero((at_zero > 0) & (at_window < 0))
-    expected = [brentq(above, 0.0, plan.window, (n,), xtol=1e-13) for n in crossing]
-    assert len(expected) > 0
-    seen = plan.hop[0] * (weight[:count] ** 2).sum(axis=1) > 1e-8  # the others are no levels
-    found = E[:count][seen & (E[:count] < plan.window)]
-    assert_allclose(np.sort(found), np.sort(expected), atol=1e-8)
 
 
 @pytest.mark.parametrize("seed", [1, 4, 10])
@@ -205,7 +128,7 @@ def test_what_an_exact_average_tells_of_itself():
         assert G[name].dims == ("realization", "mu", "B")
     assert (G.error > 0).all()
     assert (G.error <= finite_temperature.TOLERANCE).all()
-    fewest = finite_temperature.NODES[0] + finite_temperature.CHECKS
+    fewest = finite_temperature.NODES[0] + energy_plan.CHECKS
     assert G.energies.dtype.kind == "i"
     assert G.energies.min() == fewest
     for other in ({"temperature": 0}, {"energy_spacing": 4e-3}):
@@ -224,49 +147,3 @@ def test_what_an_exact_average_tells_of_itself():
 def test_what_cannot_be_averaged_is_refused(name, changed):
     with pytest.raises(ArgumentError, match=f"Argument {name} must"):
         dl.conductance(random_wire(1, sites=20), 0.1, 0.3, **changed)
-
-
-@pytest.mark.parametrize("n", [1, 2, 3, 17, 96])
-def test_eigenvalues_of_a_pencil(n):
-    rng = np.random.default_rng(n)
-    root, K, b = rng.normal(size=(n, n)), rng.normal(size=(n, n)), rng.normal(size=(n, 8))
-    N, K = root @ root.T + np.eye(n), K + K.T
-    R, A, rows = np.empty((n, n)), np.empty((n, n)), np.empty((n, 8))
-    order, found, off = np.empty(n, dtype=np.int64), np.empty(n), np.empty(n)
-    assert eigen.pivoted_cholesky(N, 1e-12, R, order) == n
-    assert_allclose(R.T @ R, N, atol=1e-10)
-    eigen.reduce_pencil(K, b, R, order, n, A, rows)
-    eigen.tridiagonalise(A, n, rows, found, off)
-    assert eigen.tridiagonal_levels(found, off, n, rows)
-    expected, vectors = eigh(K, N)
-    by_size = np.argsort(found)
-    assert_allclose(found[by_size], expected, atol=1e-11 * abs(expected).max())
-    seen = vectors.T @ b  # eigenvectors have no sign
-    for mine, other in zip(rows[by_size], seen, strict=True):
-        assert_allclose(np.outer(mine, mine), np.outer(other, other), atol=1e-9)
-
-
-def test_dependent_vectors_are_left_out_of_a_pencil():
-    rng = np.random.default_rng(0)
-    root = rng.normal(size=(20, 7))
-    R, order = np.empty((20, 20)), np.empty(20, dtype=np.int64)
-    rank = eigen.pivoted_cholesky(root @ root.T, 1e-9, R, order)
-    assert rank == 7
-    assert_allclose(R[:rank].T @ R[:rank], root @ root.T, atol=1e-9)
-
-
-@pytest.mark.parametrize("n", [1, 2, 6, 24])
-def test_jacobi_rotations(n):
-    rng = np.random.default_rng(n)
-    H = np.diag(rng.uniform(-0.1, 0.1, n)) - 0.01j * np.diag(rng.uniform(0.1, 1, n))
-    mixing = 1e-3 * (rng.normal(size=(n, n)) + 1j * rng.normal(size=(n, n)))
-    H = H + mixing + mixing.T
-    re, im, rows_re, rows_im = H.real.copy(), H.imag.copy(), np.eye(n), np.zeros((n, n))
-    assert jacobi.diagonalise_nearly(re, im, rows_re, rows_im)
-    rotated, Q = re + 1j * im, rows_re + 1j * rows_im
-    assert_allclose(Q @ Q.T, np.eye(n), atol=1e-10)
-    assert_allclose(Q @ H @ Q.T, rotated, atol=1e-12)
-    distance = abs(np.diag(rotated)[:, None] - np.diag(rotated))
-    assert (abs(rotated - np.diag(np.diag(rotated))) <= jacobi.MIXING * distance + 1e-18).all()
-    expected, found = np.linalg.eig(H)[0], np.linalg.eig(rotated)[0]
-    assert_allclose(abs(found[:, None] - expected).min(axis=1), 0, atol=1e-10)
