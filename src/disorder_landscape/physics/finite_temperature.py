@@ -15,6 +15,7 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from disorder_landscape.physics.compilation import compile_kernels
 from disorder_landscape.physics.ends import end_green_functions, lane_conductances
 from disorder_landscape.physics.fast_solver import GROWTH_LIMIT, Problem, prepare
 from disorder_landscape.physics.hamiltonian import ComplexArray
@@ -416,6 +417,7 @@ def thermal_conductance(
     error : array, shape (wire, mu, B)
     energies : array, shape (wire, mu, B)
     """
+    compile_kernels()
     kT = BOLTZMANN * temperature
     shape = (len(wires), B.size, mu.size)
     G, error = np.zeros((*shape, bias.size, 4)), np.full(shape, np.inf)
