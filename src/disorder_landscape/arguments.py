@@ -53,7 +53,8 @@ def grid_in(
     """
     must = f"be a number or an increasing list of numbers in {unit}"
     try:
-        grid = np.atleast_1d(np.asarray(values, dtype=np.float64))
+        # a copy, contiguous and writable: what the kernels are compiled for
+        grid = np.array(values, dtype=np.float64, order="C", ndmin=1)
     except (TypeError, ValueError, OverflowError):
         raise ArgumentError(name, must, "it holds something else") from None
     require(grid.ndim == 1, name, must, f"it has shape {grid.shape}")

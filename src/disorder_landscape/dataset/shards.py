@@ -20,6 +20,7 @@ import xarray as xr
 from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
+from disorder_landscape.physics.compilation import compile_kernels
 from disorder_landscape.physics.labels import CONDUCTANCES
 
 VARIABLES = (*CONDUCTANCES, "components", "alpha", "potential")
@@ -137,6 +138,7 @@ def generate(
         for shard in missing:
             progress(make_shard(config, folder, shard))
         return
+    compile_kernels()  # here, where Ctrl-C is heard
     with ProcessPoolExecutor(workers, get_context("spawn"), _one_thread) as pool:
         futures = [pool.submit(make_shard, config, folder, shard) for shard in missing]
         try:

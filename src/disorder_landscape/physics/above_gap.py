@@ -13,6 +13,7 @@ from collections.abc import Sequence
 import numba as nb
 import numpy as np
 
+from disorder_landscape.physics.compilation import compile_kernels
 from disorder_landscape.physics.complex_recursion import WIDTH, eliminate_inner_sites_complex
 from disorder_landscape.physics.fast_solver import Problem, prepare
 from disorder_landscape.physics.hamiltonian import ComplexArray
@@ -148,6 +149,7 @@ def bare_conductance(
 
     As `fast_solver.bare_conductance`, for real ω of either sign, ω ≠ ±Δ₀ of each wire.
     """
+    compile_kernels()
     p = prepare(wires, mu, B, omega, retarded_pairing_factors)
     out = np.empty((len(wires), B.size, mu.size * omega.size, 2, 4))
     _conductance_kernel(p, growth_limit, out)

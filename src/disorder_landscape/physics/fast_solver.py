@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numba as nb
 import numpy as np
 
+from disorder_landscape.physics.compilation import compile_kernels
 from disorder_landscape.physics.ends import end_green_functions, lane_conductances
 from disorder_landscape.physics.hamiltonian import ComplexArray, pairing_factors
 from disorder_landscape.physics.leads import lead_self_energies, rotate_spin
@@ -158,6 +159,7 @@ def bare_conductance(
     The last axes are the sign of ω (+, −) and G_LL, G_RR, G_LR, G_RL; 0 ≤ ω < Δ₀. All wires have
     the same number of sites. Lanes that grow beyond `growth_limit` are solved by `pivoted`.
     """
+    compile_kernels()
     p = prepare(wires, mu, B, omega)
     out = np.empty((len(wires), B.size, mu.size * omega.size, 2, 4))
     _conductance_kernel(p, growth_limit, out)
@@ -172,6 +174,7 @@ def reflection_determinant(
 
     r = −1 + iΓ^½ G Γ^½ (Fisher–Lee), so det r = det(−1 + iΓG), real by particle–hole symmetry.
     """
+    compile_kernels()
     p = prepare(wires, mu, B, np.zeros(1))
     out = np.empty((len(wires), B.size, mu.size, 2, 4, 4), dtype=np.complex128)
     _end_block_kernel(p, growth_limit, out)

@@ -19,6 +19,7 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from disorder_landscape.physics.compilation import compile_kernels
 from disorder_landscape.physics.dressing import CUBIC, Leads, leads_between
 from disorder_landscape.physics.ends import end_green_functions, lane_conductances
 from disorder_landscape.physics.energy_plan import CHECKS, EnergyPlan, energy_plan
@@ -224,6 +225,7 @@ def thermal_conductance(
     error : array, shape (wire, mu, B)
     energies : array, shape (wire, mu, B)
     """
+    compile_kernels()
     kT = BOLTZMANN * temperature
     shape = (len(wires), B.size, mu.size)
     G, error = np.zeros((*shape, bias.size, 4)), np.full(shape, np.inf)

@@ -16,6 +16,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from disorder_landscape.arguments import grid_in, require
+from disorder_landscape.physics.compilation import compile_kernels
 from disorder_landscape.physics.fast_solver import GROWTH_LIMIT
 from disorder_landscape.physics.gradient_kernel import Problem, gradient_kernel
 from disorder_landscape.physics.hamiltonian import pairing_factors
@@ -100,6 +101,7 @@ def conductance_gradient(
         "B": grid_in("B", B, -100.0, 100.0, "T"),
         "bias": grid_in("bias", bias, -edge, edge, "meV"),
     }
+    compile_kernels()
     p = _prepare(wire, *grids.values())
     B_size, pairs = grids["B"].size, grids["mu"].size * grids["bias"].size
     by_V, growth = np.empty((4, B_size, pairs, wire.sites)), np.empty((B_size, pairs))
