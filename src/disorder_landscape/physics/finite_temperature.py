@@ -48,6 +48,9 @@ NODES = (12, 13, 16, 20, 28, 36)
 """Numbers of nodes that are tried in turn."""
 TOLERANCE = 1e-4
 """Estimated error in e²/h above which nodes are added."""
+AGREEMENT = 2.0
+"""Two models that differ by less than their estimates are as wrong as the geometric mean of both:
+the estimates are cautious, but models may err together."""
 FLOOR = 5e-6
 """Error in e²/h that no check sees: of the kernel's cut and of the smooth part's interpolation."""
 
@@ -153,7 +156,8 @@ def _leads(p: Problem, plan: EnergyPlan, w: int, f: int) -> Leads:  # pragma: no
     at_picks = np.empty((CUBIC, 8, 8), dtype=np.complex128)
     for k in range(CUBIC):
         _chiral_self_energy(p.sigma[w, f, plan.picks[k]], plan.hop[w], at_picks[k])
-    return leads_between(plan.cubic, at_picks)
+    leads: Leads = leads_between(plan.cubic, at_picks)
+    return leads
 
 
 @nb.njit(cache=True, parallel=True)
@@ -230,7 +234,7 @@ def thermal_conductance(
     shape = (len(wires), B.size, mu.size)
     G, error = np.zeros((*shape, bias.size, 4)), np.full(shape, np.inf)
     energies = np.zeros(shape, dtype=np.int64)
-    sets = np.stack(np.indices(shape).reshape(3, -1), axis=1)
+    sets = np.argwhere(np.ones(shape, dtype=bool))
     earlier: list[FloatArray] = []
     for nodes in NODES:
         plan = energy_plan(wires, bias, kT, nodes)
@@ -238,9 +242,9 @@ def thermal_conductance(
         _kernel(prepare(wires, mu, B, plan.omega), plan, growth_limit, sets, found, estimate)
         found[~np.isfinite(estimate)] = np.nan
         energies[tuple(sets.T)] += plan.omega.size
-        for other in earlier:  # two models that agree need no check; NaN agrees with nothing
-            apart = abs(found - other).max(axis=(-1, -2))
-            estimate = np.where(2 * apart < estimate, 2 * apart, estimate)
+        for other in earlier:  # NaN agrees with nothing
+            apart = AGREEMENT * abs(found - other).max(axis=(-1, -2))
+            estimate = np.where(apart < estimate, np.sqrt(apart * estimate), estimate)
         estimate += FLOOR
         better = estimate < error
         G[better], error[better] = found[better], estimate[better]

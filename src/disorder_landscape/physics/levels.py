@@ -32,8 +32,10 @@ from disorder_landscape.physics.parameters import FloatArray
 from disorder_landscape.physics.recursion import C_AT, D_AT, E_AT, LANES, SLOPES
 from disorder_landscape.physics.simd import WIDTH
 
+LOW = 1e-3
+"""Below this energy in meV completeness tells b of the lowest level better than Eb does."""
 ZERO_MODE = 3e-5
-"""Below this energy in meV Eb is too small to tell b; completeness does."""
+"""Below this energy in meV Eb is too small to tell b."""
 
 
 @nb.njit(cache=True)
@@ -176,42 +178,51 @@ def wire_levels(
     if not tridiagonal_levels(diagonal, off, rank, rows):
         return 0
     for l in range(W):
-        small = 0
         for j in range(rank):
             square = diagonal[j * W + l]
             E[l, j] = np.sqrt(square) if not square < 0.0 else 0.0
             for c in range(8):
                 weight[l, j, c] = rows[(8 * j + c) * W + l]
-            if E[l, j] < ZERO_MODE:
-                small += 1
-            else:
+            if E[l, j] >= ZERO_MODE:
                 for c in range(4, 8):
                     weight[l, j, c] /= E[l, j]
-        if small > 0:
-            _complete_zero_modes(omega[0], G[l, 0], E[l, :rank], weight[l])
+        _complete_low_levels(omega[0], G[l, 0], E[l, :rank], weight[l])
     return int(rank)
 
 
 @nb.njit(cache=True, error_model="numpy")
-def _complete_zero_modes(
+def _complete_low_levels(
     omega: float, G: FloatArray, E: FloatArray, weight: FloatArray
 ) -> None:  # pragma: no cover
-    """Give the levels at zero the b that the others leave of ωG₋₋ = Σ b bᵀ ω²/(ω² − E²)."""
-    x = omega**2
+    """Take b of low levels from what the others leave of ωG₋₋ = Σ b bᵀ ω²/(ω² − E²).
+
+    Of the lowest level, and of all below ZERO_MODE.
+    """
+    lowest, x = 0, omega**2
+    for j in range(E.size):
+        if E[j] < E[lowest]:
+            lowest = j
+    below = min(LOW, 0.25 * omega)
+    limit = min(ZERO_MODE, below)
+    if not E[lowest] < below:
+        return
     rest = np.empty((4, 4))
     for i in range(4):
         for k in range(4):
             rest[i, k] = omega * G[4 + i, 4 + k]
     for j in range(E.size):
-        if E[j] >= ZERO_MODE:
+        if j != lowest and E[j] >= limit:
             factor = x / (x - E[j] ** 2)
             for i in range(4):
                 for k in range(4):
                     rest[i, k] -= factor * weight[j, 4 + i] * weight[j, 4 + k]
     for j in range(E.size):
-        if E[j] < ZERO_MODE:
-            p = np.argmax(np.diag(rest))
-            root = np.sqrt(max(rest[p, p], 0.0))
+        if j == lowest or E[j] < limit:
+            p, factor = 0, x / (x - E[j] ** 2)
+            for i in range(1, 4):
+                if rest[i, i] > rest[p, p]:
+                    p = i
+            root = np.sqrt(max(rest[p, p], 0.0) * factor)
             along = 0.0  # the sign of b relative to a is that of the E b that was found
             for i in range(4):
                 along += weight[j, 4 + i] * rest[i, p]
@@ -221,4 +232,4 @@ def _complete_zero_modes(
                 weight[j, 4 + i] = rest[i, p] / root if root != 0.0 else 0.0
             for i in range(4):
                 for k in range(4):
-                    rest[i, k] -= weight[j, 4 + i] * weight[j, 4 + k]
+                    rest[i, k] -= factor * weight[j, 4 + i] * weight[j, 4 + k]

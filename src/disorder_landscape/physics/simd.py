@@ -23,7 +23,7 @@ _LLVM = ir.VectorType(ir.DoubleType(), WIDTH)
 _MASK = ir.VectorType(ir.IntType(32), WIDTH)
 
 
-class Vector(types.Type):  # type: ignore[misc]
+class Vector(types.Type):
     """Numba's type of WIDTH float64."""
 
     def __init__(self) -> None:
@@ -34,7 +34,7 @@ vector = Vector()
 
 
 @register_model(Vector)
-class _Model(models.PrimitiveModel):  # type: ignore[misc]
+class _Model(models.PrimitiveModel):
     def __init__(self, manager: Any, kind: Any) -> None:
         super().__init__(manager, kind, _LLVM)
 
@@ -44,7 +44,7 @@ def _place(context: Any, builder: Any, kind: Any, array: Any, at: Any) -> Any:
     return builder.bitcast(builder.gep(data, [at]), _LLVM.as_pointer())
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@intrinsic
 def load(typing: Any, array: Any, at: Any) -> Any:
     """Return array[at : at + WIDTH] of a flat array."""
 
@@ -55,7 +55,7 @@ def load(typing: Any, array: Any, at: Any) -> Any:
     return vector(array, types.intp), generate
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@intrinsic
 def store(typing: Any, array: Any, at: Any, value: Any) -> Any:
     """Write a vector to array[at : at + WIDTH] of a flat array."""
 
@@ -67,7 +67,7 @@ def store(typing: Any, array: Any, at: Any, value: Any) -> Any:
     return types.none(array, types.intp, vector), generate
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@intrinsic
 def fill(typing: Any, number: Any) -> Any:
     """Return a vector of equal numbers."""
 
@@ -82,14 +82,14 @@ def fill(typing: Any, number: Any) -> Any:
 def _define(operation: Callable[[Any, Any], Any], instruction: str) -> None:
     """Make an operator of two vectors an instruction."""
 
-    @intrinsic  # type: ignore[untyped-decorator]
+    @intrinsic
     def apply(typing: Any, a: Any, b: Any) -> Any:
         def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
             return getattr(builder, instruction)(*given, flags=_FLAGS)
 
         return vector(vector, vector), generate
 
-    @overload(operation)  # type: ignore[untyped-decorator]
+    @overload(operation)
     def of_vectors(a: Any, b: Any) -> Any:
         def applied(a: Any, b: Any) -> Any:
             return apply(a, b)
@@ -110,19 +110,19 @@ def _call(builder: Any, name: str, given: Any) -> Any:
     )
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@intrinsic
 def roots(typing: Any, a: Any) -> Any:
     """Return the square roots of a vector."""
     return vector(vector), lambda context, builder, signature, given: _call(builder, "sqrt", given)
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@intrinsic
 def sizes(typing: Any, a: Any) -> Any:
     """Return the absolute values of a vector."""
     return vector(vector), lambda context, builder, signature, given: _call(builder, "fabs", given)
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@intrinsic
 def where_greater(typing: Any, a: Any, b: Any, x: Any, y: Any) -> Any:
     """Return x where a > b, elsewhere y."""
 
