@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 import numba as nb
 import numpy as np
+from numpy.typing import NDArray
 
 from disorder_landscape.physics.dressing import (
     ENDS,
@@ -35,10 +36,12 @@ FAINT = 1e-9
 """Widths below this (meV) carry no conductance and need no digits."""
 STEPS = 2
 """Steps of a batch before it is looked at."""
-ROUNDS = 6
+ROUNDS = 8
 """Most batches per pole."""
 CONVERGED = 3e-4
-"""A pole that moves by less than this part of its width has converged: cubically, 1e-11 is left."""
+"""A pole has converged if before the last step it was off by less than this part of its width:
+cubically, 1e-11 is left. It was off by |x_old||x_new|/|x_newᵀ(1 − H')x_new| at most; the quotient
+itself may stand still elsewhere, where two poles all but meet."""
 
 
 class Batch(NamedTuple):
@@ -46,7 +49,6 @@ class Batch(NamedTuple):
 
     zr: FloatArray  # (WIDTH,)
     zi: FloatArray
-    moved: FloatArray  # (WIDTH,), by the last step, over the width
     x: FloatArray  # (4, level · WIDTH), over +E and over −E: re, im, re, im
     scale: FloatArray  # (WIDTH,), of x, against overflow
     t: FloatArray  # (2, 8 · WIDTH)
@@ -63,7 +65,6 @@ def new_batch(levels: int) -> Batch:  # pragma: no cover
     """Return room for WIDTH poles."""
     W = WIDTH
     return Batch(
-        np.empty(W),
         np.empty(W),
         np.empty(W),
         np.empty((4, levels * W)),
@@ -206,10 +207,8 @@ def _step(levels: Levels, leads: Leads, b: Batch, overlap: FloatArray) -> None: 
     for l in range(W):
         norm = complex(b.norm[l], b.norm[W + l])
         shift = complex(overlap[l], overlap[W + l]) / norm
-        zi = min(b.zi[l] - shift.imag, -1e-16)
-        b.moved[l] = abs(complex(shift.real, b.zi[l] - zi)) / (FAINT - zi)
         b.zr[l] -= shift.real
-        b.zi[l] = zi
+        b.zi[l] = min(b.zi[l] - shift.imag, -1e-16)
         b.scale[l] = 1.0 / np.sqrt(abs(norm))
 
 
@@ -223,11 +222,16 @@ class Poles(NamedTuple):
 
 
 @nb.njit(cache=True, error_model="numpy")
-def iterate(poles: Poles, levels: Levels, leads: Leads, b: Batch) -> None:  # pragma: no cover
-    """Iterate poles and vectors in place, from approximate z and x (`resonances.start_poles`)."""
-    W, count, size = WIDTH, poles.z.size, levels.E.size
-    overlap = np.empty(2 * W)
-    active, left = np.arange(count), count
+def iterate(
+    poles: Poles, active: NDArray[np.int64], levels: Levels, leads: Leads, b: Batch
+) -> None:  # pragma: no cover
+    """Iterate the active poles and their vectors in place; `active` is destroyed.
+
+    On entry z and x are approximations, see `resonances.start_poles`. The norm of a pole that does
+    not converge is NaN.
+    """
+    W, size = WIDTH, levels.E.size
+    overlap, left = np.empty(2 * W), active.size
     for _ in range(ROUNDS):
         waiting, left = left, 0
         for first in range(0, waiting, W):
@@ -243,18 +247,23 @@ def iterate(poles: Poles, levels: Levels, leads: Leads, b: Batch) -> None:  # pr
                 _step(levels, leads, b, overlap)
             for l in range(some):
                 p = active[first + l]
-                x = poles.x[p]
+                x, before, after = poles.x[p], 0.0, 0.0
                 for part in range(4):
                     for n in range(size):
                         x[part, n] = b.x[part, n * W + l] * b.scale[l]
+                        after += x[part, n] ** 2
+                        before += b.parts[4 + part, n * W + l] ** 2
                 for i in range(8):
                     t = complex(b.t[0, i * W + l], b.t[1, i * W + l])
                     poles.t[p, i] = t * b.scale[l]
                 norm = complex(b.norm[l], b.norm[W + l])
                 poles.norm[p] = norm * b.scale[l] ** 2
                 poles.z[p] = complex(b.zr[l], b.zi[l])
-                if not b.moved[l] <= CONVERGED:
+                off = np.sqrt(before * after) * b.scale[l]
+                if not off <= CONVERGED * (FAINT - b.zi[l]):
                     active[left] = p
                     left += 1
         if left == 0:
             break
+    for k in range(left):
+        poles.norm[active[k]] = np.nan

@@ -22,10 +22,10 @@ from disorder_landscape.physics.dressing import (
 )
 from disorder_landscape.physics.energy_plan import CHECKS, EnergyPlan
 from disorder_landscape.physics.hamiltonian import ComplexArray
-from disorder_landscape.physics.inverse_iteration import Batch, iterate, new_batch
+from disorder_landscape.physics.inverse_iteration import Batch, new_batch
 from disorder_landscape.physics.parameters import FloatArray
 from disorder_landscape.physics.residues import Terms, conductance_terms, sum_poles
-from disorder_landscape.physics.resonances import right_half, start_poles
+from disorder_landscape.physics.resonances import find_poles, start_poles
 from disorder_landscape.physics.simd import WIDTH, fill, load, store
 from disorder_landscape.physics.thermal_poles import average_poles
 
@@ -68,10 +68,9 @@ def rational_average(
     m = plan.nodes
     levels, b = level_products(E, weight), new_batch(E.size)
     omega = plan.omega[plan.picks[1]]
-    poles, both = start_poles(omega, isolated, plan.window, hop, E, weight, leads)
-    iterate(poles, levels, leads, b)
-    order, paired = right_half(poles, leads)
-    if paired + order.size != both:  # a pole was lost, or met twice
+    start, both = start_poles(omega, isolated, plan.window, hop, E, weight, leads)
+    poles, order, paired = find_poles(start, both, levels, leads, b)
+    if order.size == 0 and both > 0:
         return np.inf
     terms = conductance_terms(poles, order, paired, levels, leads, b)
     smooth = np.empty((4, plan.signed.size))

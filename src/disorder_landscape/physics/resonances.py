@@ -14,9 +14,9 @@ import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
-from disorder_landscape.physics.dressing import ENDS, Leads
+from disorder_landscape.physics.dressing import ENDS, Leads, Levels
 from disorder_landscape.physics.hamiltonian import ComplexArray
-from disorder_landscape.physics.inverse_iteration import FAINT, Poles
+from disorder_landscape.physics.inverse_iteration import FAINT, Batch, Poles, iterate
 from disorder_landscape.physics.jacobi import diagonalise_nearly
 from disorder_landscape.physics.levels import invert
 from disorder_landscape.physics.parameters import FloatArray
@@ -228,30 +228,75 @@ def _orthogonalise(poles: Poles, leads: Leads, k: int, at: int) -> float:  # pra
     return after / before
 
 
+@nb.njit(cache=True)
+def _reflect(poles: Poles, k: int) -> None:  # pragma: no cover
+    """Replace a pole by its mirror image −z*, of C v*: ±E change places, and t turns to −C t*."""
+    poles.z[k] = -np.conj(poles.z[k])
+    poles.norm[k] = np.conj(poles.norm[k])
+    x = poles.x[k]
+    for n in range(x.shape[1]):
+        x[0, n], x[2, n] = x[2, n], x[0, n]
+        x[1, n], x[3, n] = -x[3, n], -x[1, n]
+    for i in range(4):
+        poles.t[k, i] = -np.conj(poles.t[k, i])
+        poles.t[k, 4 + i] = np.conj(poles.t[k, 4 + i])
+
+
 @nb.njit(cache=True, error_model="numpy")
-def right_half(poles: Poles, leads: Leads) -> tuple[NDArray[np.int64], int]:  # pragma: no cover
+def right_half(
+    poles: Poles, leads: Leads
+) -> tuple[NDArray[np.int64], int, int, int]:  # pragma: no cover
     """Return the poles with mirror images, then those that are their own; and how many of the first.
 
-    Vectors of equal poles (Kramers pairs at B = 0) are made orthogonal; one that is not new is
-    left out, as are poles in the left half.
+    A pole in the left half stands for its mirror image; one that did not converge is left out: near
+    the axis another's image may stand for it. Vectors of equal poles (Kramers pairs at
+    B = 0) are made orthogonal; one that is not new is left out: of these also returns the last
+    central one, and which it equals, or −1.
     """
     z = poles.z
     order = np.empty(z.size, dtype=np.int64)
-    found, paired = 0, 0
+    found, paired, again, twin = 0, 0, -1, -1
     for central in range(2):
         for k in range(z.size):
-            mine = abs(z[k].real) <= CENTRAL if central else z[k].real > CENTRAL
-            if not mine:
+            if (abs(z[k].real) <= CENTRAL) != (central == 1) or np.isnan(poles.norm[k]):
                 continue
+            if z[k].real < -CENTRAL:
+                _reflect(poles, k)
             kept = 1.0
             for m in range(found):
                 at = order[m]
                 faint = abs(z[k].imag) < FAINT  # it may stand twice: it carries nothing
                 if not faint and abs(z[at] - z[k]) < EQUAL * abs(z[k].imag):
                     kept = min(kept, _orthogonalise(poles, leads, k, at))
+                    if central == 1 and not kept > 0.1:
+                        again, twin = k, at
             if kept > 0.1:
                 order[found] = k
                 found += 1
         if central == 0:
             paired = found
-    return order[:found], paired
+    return order[:found], paired, again, twin
+
+
+@nb.njit(cache=True, error_model="numpy")
+def find_poles(
+    start: Poles, both: int, levels: Levels, leads: Leads, b: Batch
+) -> tuple[Poles, NDArray[np.int64], int]:  # pragma: no cover
+    """Iterate the poles of `start_poles`; return them, their order, and how many have images.
+
+    Where two starts have ended at one pole of the imaginary axis, the other one is looked for on
+    either side of it. The order is empty if a pole was lost, or met twice.
+    """
+    poles = Poles(start.z.copy(), start.x.copy(), start.t, start.norm)
+    iterate(poles, np.arange(start.z.size), levels, leads, b)
+    order, paired, again, twin = right_half(poles, leads)
+    for side in (1.0 - ASIDE, 1.0 + ASIDE):
+        if again >= 0 and paired + order.size == both - 1:
+            poles.z[again] = poles.z[twin] * side
+            poles.x[again], poles.t[again] = start.x[again], 0.0
+            _orthogonalise(poles, leads, again, twin)
+            iterate(poles, np.full(1, again), levels, leads, b)
+            order, paired, again, twin = right_half(poles, leads)
+    if paired + order.size != both:
+        return poles, order[:0], 0
+    return poles, order, paired
