@@ -8,7 +8,7 @@ from typing import Any
 
 import numba as nb
 import numpy as np
-from llvmlite.binding import get_host_cpu_name  # type: ignore[import-untyped]
+from llvmlite.binding import get_host_cpu_name
 from numpy.typing import ArrayLike
 from threadpoolctl import threadpool_limits
 

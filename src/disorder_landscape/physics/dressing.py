@@ -2,9 +2,9 @@
 
 With the levels ±E of the isolated wire and what the ends see of them, U (`levels`),
 
-    G_iso(z) = Uᵀ-sums of 1/(z ∓ E),   S(z) = Σ(z)⁻¹,   M = S − G_iso,
+    G_iso(z) = U (z − E)⁻¹ Uᵀ,   S(z) = Σ(z)⁻¹,   M = S − G_iso,
 
-G_iso and Σ⁻¹ complex symmetric 8×8 in the chiral basis, S a cubic in the energy. M carries all that
+G_iso and S complex symmetric 8×8 in the chiral basis, S a cubic in the energy. M carries all that
 the leads do: (z − H)⁻¹ = R + R Uᵀ M⁻¹ U R with R = (z − E)⁻¹, and G = S M⁻¹ S − S. It is factored
 without pivots: its entries stay of order 1/Σ, also at the poles, because a level couples to the
 leads by the same U by which it stands in G_iso.
@@ -19,7 +19,6 @@ from typing import NamedTuple
 
 import numba as nb
 import numpy as np
-from numpy.typing import NDArray
 
 from disorder_landscape.physics.hamiltonian import ComplexArray
 from disorder_landscape.physics.levels import invert
@@ -158,7 +157,7 @@ def cubics(
 ) -> None:  # pragma: no cover
     """Write a cubic's values and slopes: (4, 20 · WIDTH), re, im, re, im, ten entries per end."""
     W = WIDTH
-    x, y, two = load(zr, 0), load(zi, 0), fill(2.0)
+    x, y = load(zr, 0), load(zi, 0)
     re, im, slope_re, slope_im = parts[0], parts[1], parts[2], parts[3]
     for end in range(2):
         at = 10 * end * W

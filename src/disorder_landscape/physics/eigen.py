@@ -80,19 +80,23 @@ def reduce_pencil(
 def _reflector(
     A: FloatArray, k: int, n: int, new: FloatArray, off: FloatArray, beta: FloatArray
 ) -> None:  # pragma: no cover
-    """Write the reflection 1 − β new newᵀ that leaves row k one entry beside the diagonal."""
+    """Write the reflection 1 − β new newᵀ that leaves row k one entry beside the diagonal.
+
+    Where no other is left β = 0: then sets of smaller rank are untouched by the others.
+    """
     W = WIDTH
-    zero, one = fill(0.0), fill(1.0)
-    total = zero
-    for j in range(k + 1, n):
+    zero, one, head = fill(0.0), fill(1.0), load(A, (k * n + k + 1) * W)
+    tail = zero
+    for j in range(k + 2, n):
         entry = load(A, (k * n + j) * W)
-        total = total + entry * entry
+        tail = tail + entry * entry
         store(new, j * W, entry)
-    norm, head = roots(total), load(new, (k + 1) * W)
+    norm = roots(tail + head * head)
     alpha = where_greater(head, zero, zero - norm, norm)
+    alpha = where_greater(tail, zero, alpha, head)
     store(off, k * W, alpha)
     store(new, (k + 1) * W, head - alpha)
-    store(beta, 0, where_greater(norm, zero, one / (norm * (norm + sizes(head))), zero))
+    store(beta, 0, where_greater(tail, zero, one / (norm * (norm + sizes(head))), zero))
 
 
 @nb.njit(cache=True, error_model="numpy")
@@ -153,10 +157,8 @@ def tridiagonalise(
             at = (k * n + j) * W
             store(A, at, load(A, at) - vk * load(p, j * W) - pk * load(v, j * W))
         store(diagonal, k * W, load(A, (k * n + k) * W))
-        if k == n - 2:
-            store(off, k * W, load(A, (k * n + k + 1) * W))
-        if k >= n - 2:
-            continue
+        if k == n - 1:
+            break
         _reflector(A, k, n, new, off, beta)
         _update_and_multiply(A, k + 1, n, v, p, new, product)
         overlap, share = fill(0.0), load(beta, 0)

@@ -39,9 +39,7 @@ class EnergyPlan(NamedTuple):
     hop: FloatArray  # (wire,)
 
 
-def energy_plan(
-    wires: Sequence[Nanowire], bias: FloatArray, kT: float, nodes: int
-) -> EnergyPlan:
+def energy_plan(wires: Sequence[Nanowire], bias: FloatArray, kT: float, nodes: int) -> EnergyPlan:
     """Plan the energies for these wires and biases with `nodes` nodes and CHECKS checks."""
     window = abs(bias).max() + REACH * kT
     between = np.arange(1, CHECKS + 1) * (nodes - 1) // CHECKS

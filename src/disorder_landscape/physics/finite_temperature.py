@@ -1,9 +1,10 @@
 """The conductance at finite temperature, exactly: rational in energy, averaged in closed form.
 
 For one wire, μ and B: the end Green's function and its slope at M energies (`recursion`), the
-levels of the isolated wire (`levels`), the poles with the leads attached (`resonances`,
-`inverse_iteration`), their residues (`residues`), the closed-form averages (`thermal_poles`). A few
-further energies check the model; where it is off by more than the tolerance, M grows.
+levels of the isolated wire (`levels`), the poles with the leads attached (`pole_starts`,
+`inverse_iteration`, `resonances`), their residues (`residues`), the closed-form averages
+(`thermal_poles`). A few further energies check the model; where it is off by more than the
+tolerance, M grows.
 
 What bounds it: see `recursion` for the solver. The algebra of the levels works on WIDTH sets at
 once and moves matrices of some 50 × 50 through the second cache; the poles of one set are WIDTH at

@@ -6,7 +6,7 @@ them, U. One step takes x to (z − H)⁻¹x = R x + R Uᵀ t, M t = U R x (`dre
     z − x_newᵀ x_old / x_newᵀ(1 − H')x_new,    xᵀ(1 − H')x = xᵀx + tᵀS't,
 
 the symmetric Rayleigh quotient (no conjugation), which converges cubically: with the starts of
-`resonances` the second step moves poles by less than CONVERGED in nearly all sets. No expansion in
+`pole_starts` the second step moves poles by less than CONVERGED in nearly all sets. No expansion in
 the coupling is left. As U x_new = S t, a pole's v, G ≈ v vᵀ/(ω − z), needs no further sum.
 """
 
@@ -227,7 +227,7 @@ def iterate(
 ) -> None:  # pragma: no cover
     """Iterate the active poles and their vectors in place; `active` is destroyed.
 
-    On entry z and x are approximations, see `resonances.start_poles`. The norm of a pole that does
+    On entry z and x are approximations, see `pole_starts`. The norm of a pole that does
     not converge is NaN.
     """
     W, size = WIDTH, levels.E.size

@@ -24,8 +24,9 @@ from disorder_landscape.physics.energy_plan import CHECKS, EnergyPlan
 from disorder_landscape.physics.hamiltonian import ComplexArray
 from disorder_landscape.physics.inverse_iteration import Batch, new_batch
 from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.physics.pole_starts import start_poles
 from disorder_landscape.physics.residues import Terms, conductance_terms, sum_poles
-from disorder_landscape.physics.resonances import find_poles, start_poles
+from disorder_landscape.physics.resonances import find_poles
 from disorder_landscape.physics.simd import WIDTH, fill, load, store
 from disorder_landscape.physics.thermal_poles import average_poles
 

@@ -34,7 +34,7 @@ vector = Vector()
 
 
 @register_model(Vector)
-class _Model(models.PrimitiveModel):
+class _Model(models.PrimitiveModel):  # type: ignore[misc]
     def __init__(self, manager: Any, kind: Any) -> None:
         super().__init__(manager, kind, _LLVM)
 

@@ -29,7 +29,10 @@ REACH = 11.0
 def trigamma(
     x: FloatArray, y: FloatArray, re: FloatArray, im: FloatArray
 ) -> None:  # pragma: no cover
-    """Write ψ₁(x + iy), x ≥ ½, of WIDTH numbers by recurrence and Stirling's series (DLMF 5.15.8), to 1e-12."""
+    """Write ψ₁(x + iy), x ≥ ½, of WIDTH numbers, to 1e-12.
+
+    By recurrence and Stirling's series (DLMF 5.15.8).
+    """
     one, two = fill(1.0), fill(2.0)
     u, v = load(x, 0), load(y, 0)
     total_re, total_im = fill(0.0), fill(0.0)
@@ -119,9 +122,7 @@ def _interpolated(u: FloatArray, share: FloatArray, nodes: int) -> FloatArray:  
     return weights
 
 
-def thermal_node_weights(
-    bias: FloatArray, kT: float, window: float, nodes: int
-) -> FloatArray:
+def thermal_node_weights(bias: FloatArray, kT: float, window: float, nodes: int) -> FloatArray:
     """Return the weights of a smooth function's values at ω_k, then −ω_k, (bias, 2 · node).
 
     They average the polynomial through all 2·nodes values, and leave a constant as it is.
