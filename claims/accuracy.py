@@ -317,7 +317,8 @@ def draw(measured: dict[str, FloatArray]) -> Figure:
     worst, estimate = error.max(axis=(1, 2)), measured["estimate"]
     figure = Figure(figsize=(7.06, 2.7), layout="constrained")
     a, b = figure.subplots(1, 2)
-    bins = np.geomspace(1e-9, 4.0, 97)
+    end = 3 * max(WORST, worst.max())
+    bins = np.geomspace(1e-9, end, 65)
     a.hist(np.clip(worst, bins[0], bins[-1]), bins, color="#4477AA", label="error")
     a.hist(estimate, bins, histtype="step", color="#CC6677", linewidth=1.2, label="its estimate")
     a.set(xscale="log", yscale="log", xlabel="largest of a set (e²/h)", ylabel="sets")
@@ -327,12 +328,12 @@ def draw(measured: dict[str, FloatArray]) -> Figure:
     b.set(
         xscale="log", yscale="log", xlabel="x (e²/h)", ylabel="share of conductances with error > x"
     )
-    b.set(xlim=(1e-9, 4.0), ylim=(0.5 / falling.size, 1.5))
-    for x, bound in ((CLOSE, 1 - SHARE_CLOSE), (WORST, None)):
+    b.set(xlim=(1e-9, end), ylim=(0.5 / falling.size, 1.5))
+    bounds = ((CLOSE, 1 - SHARE_CLOSE, "at most"), (WORST, 0.1, "none"))
+    for x, share, label in bounds:
         b.axvline(x, color="0.4", linestyle="--", linewidth=0.8)
-        if bound is not None:
-            b.plot(x, bound, marker="v", color="0.2", markersize=5)
-            b.annotate("at most", (x, bound), (4, 2), textcoords="offset points")
+        b.annotate(label, (x, share), (-3, 4), textcoords="offset points", ha="right")
+    b.plot(CLOSE, 1 - SHARE_CLOSE, marker="v", color="0.2", markersize=5)
     for axes, letter in ((a, "a"), (b, "b")):
         axes.set_title(f"({letter})", loc="left")
     return figure

@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 import disorder_landscape as dl
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.physics import energy_plan, finite_temperature
+from disorder_landscape.physics.disorder import disorder_realization
 from disorder_landscape.physics.parameters import BIAS
 from disorder_landscape.physics.quadrature import thermal_quadrature
 from disorder_landscape.physics.transport import exact_average
@@ -32,6 +33,19 @@ def test_the_estimate_bounds_the_error(seed):
     error = abs(found - exact.conductance).max()
     assert error < 1e-4
     assert error <= 3 * estimate.item() + exact.error.item()
+
+
+@pytest.mark.parametrize("seed", [728, 804])
+def test_poles_that_all_but_meet(seed):
+    """At ±0.94 − 1433.0i neV, where Rayleigh quotients stand still; at −0.633i and −0.639i µeV."""
+    rng = np.random.default_rng([99, seed])
+    V = disorder_realization(rng, 5, 300)[1]
+    wire = dl.Nanowire(V, alpha=rng.uniform(6.4, 9.6))
+    arguments = rng.uniform(0, 0.6, 1), rng.uniform(0, 0.8, 1), np.array(BIAS), 0.05
+    found, estimate, energies = exact_average([wire], *arguments)
+    exact = thermal_quadrature([wire], *arguments, panel=0.05, tolerance=1e-8)
+    assert abs(found - exact.conductance).max() <= estimate.item() + exact.error.item()
+    assert energies.item() == finite_temperature.NODES[0] + energy_plan.CHECKS
 
 
 def test_two_poles_that_have_just_left_the_imaginary_axis():
