@@ -104,6 +104,17 @@ def test_the_number_of_threads_leaves_no_trace(grid, whole):
         numba.set_num_threads(before)
 
 
+def test_what_memory_held_before_leaves_no_trace():
+    """Numba once released arrays in use: sets that need many nodes differed from call to call."""
+    rng = np.random.default_rng(5)
+    wires = [dl.Nanowire(disorder_realization(rng, 5, 300)[1], alpha=a) for a in (6.0, 7.0, 9.0)]
+    grid = wires, np.linspace(0, 0.6, 5), np.array([0.3, 0.5]), np.array(BIAS), 0.05
+    first, junk = exact_average(*grid), []
+    for _ in range(8):
+        junk.append(rng.random(rng.integers(1, 30_000)))
+        same(exact_average(*grid), first)
+
+
 def test_the_number_of_biases_costs_no_accuracy(grid, whole):
     wires, mu, B, bias, temperature = grid
     for k in range(bias.size):

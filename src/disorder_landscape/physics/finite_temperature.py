@@ -161,6 +161,91 @@ def _leads(p: Problem, plan: EnergyPlan, w: int, f: int) -> Leads:  # pragma: no
     return leads
 
 
+@nb.njit(cache=True)
+def _average_sets(
+    p: Problem,
+    plan: EnergyPlan,
+    growth_limit: float,
+    sets: NDArray[np.int64],
+    data: _Solved,
+    first: int,
+    E: FloatArray,
+    weight: FloatArray,
+    out: FloatArray,
+    error: FloatArray,
+) -> None:  # pragma: no cover
+    """Fill out and error for sets of one wire and field, whose data and levels start at `first`.
+
+    A function of its own, so that `leads` is assigned once: where a loop replaced it now and then,
+    Numba released the arrays while they were in use.
+    """
+    w, f = sets[0, 0], sets[0, 1]
+    leads = _leads(p, plan, w, f)
+    for i in range(sets.shape[0]):
+        at, mu = first + i, sets[i, 2]
+        estimate = np.inf
+        if E.shape[1] > 0 and data.growth[at] < growth_limit:
+            estimate = rational_average(
+                plan,
+                plan.hop[w],
+                E[at],
+                weight[at],
+                data.isolated[at, plan.picks[1]],
+                leads,
+                data.green[at],
+                data.bare[at],
+                out[w, f, mu],
+            )
+        error[w, f, mu] = estimate
+
+
+@nb.njit(cache=True)
+def _end_of_group(sets: NDArray[np.int64], first: int) -> int:  # pragma: no cover
+    """Return where the sets of the wire and field of set `first` end."""
+    last = first
+    while (
+        last < sets.shape[0] and sets[last, 0] == sets[first, 0] and sets[last, 1] == sets[first, 1]
+    ):
+        last += 1
+    return last
+
+
+@nb.njit(cache=True)
+def _calculate(
+    p: Problem,
+    plan: EnergyPlan,
+    growth_limit: float,
+    sets: NDArray[np.int64],
+    out: FloatArray,
+    error: FloatArray,
+) -> None:  # pragma: no cover
+    """Fill out and error for up to WIDTH sets."""
+    W, m, count = WIDTH, plan.nodes, sets.shape[0]
+    data = _Solved(
+        np.empty((W, m, 8, 8)),
+        np.empty((W, m, 8, 8)),
+        np.empty((W, CHECKS, 8, 8), dtype=np.complex128),
+        np.empty((W, m + CHECKS, 2, 4)),
+        np.empty(W),
+    )
+    first = 0
+    while first < count:
+        last = _end_of_group(sets, first)
+        _solve(p, plan, sets[first:last], first, data)
+        first = last
+    for i in range(count, W):  # a vector has to be full
+        data.isolated[i], data.slope[i] = data.isolated[0], data.slope[0]
+    E, weight = np.empty((W, 8 * m)), np.empty((W, 8 * m, 8))
+    levels = wire_levels(plan.omega[:m], data.isolated, data.slope, DROP, E, weight)
+    some_E, some_weight = E[:, :levels].copy(), weight[:, :levels].copy()
+    first = 0
+    while first < count:
+        last = _end_of_group(sets, first)
+        some = sets[first:last]
+        _average_sets(p, plan, growth_limit, some, data, first, some_E, some_weight, out, error)
+        first = last
+
+
 @nb.njit(cache=True, parallel=True)
 def _kernel(
     p: Problem,
@@ -171,45 +256,10 @@ def _kernel(
     error: FloatArray,
 ) -> None:  # pragma: no cover
     """Fill out (wire, B, mu, bias, 4) and error (wire, B, mu) for sets (wire, B, mu)."""
-    W, m, total = WIDTH, plan.nodes, sets.shape[0]
-    for task in nb.prange((total + W - 1) // W):
-        some = sets[task * W : min((task + 1) * W, total)]
-        count = some.shape[0]
-        data = _Solved(
-            np.empty((W, m, 8, 8)),
-            np.empty((W, m, 8, 8)),
-            np.empty((W, CHECKS, 8, 8), dtype=np.complex128),
-            np.empty((W, m + CHECKS, 2, 4)),
-            np.empty(W),
-        )
-        first = 0
-        for i in range(1, count + 1):
-            if i == count or some[i, 0] != some[first, 0] or some[i, 1] != some[first, 1]:
-                _solve(p, plan, some[first:i], first, data)
-                first = i
-        for i in range(count, W):  # a vector has to be full
-            data.isolated[i], data.slope[i] = data.isolated[0], data.slope[0]
-        E, weight = np.empty((W, 8 * m)), np.empty((W, 8 * m, 8))
-        levels = wire_levels(plan.omega[:m], data.isolated, data.slope, DROP, E, weight)
-        leads = _leads(p, plan, some[0, 0], some[0, 1])
-        for i in range(count):
-            w, f, mu = some[i]
-            if i > 0 and (w != some[i - 1, 0] or f != some[i - 1, 1]):
-                leads = _leads(p, plan, w, f)
-            estimate = np.inf
-            if levels > 0 and data.growth[i] < growth_limit:
-                estimate = rational_average(
-                    plan,
-                    plan.hop[w],
-                    E[i, :levels],
-                    weight[i, :levels],
-                    data.isolated[i, plan.picks[1]],
-                    leads,
-                    data.green[i],
-                    data.bare[i],
-                    out[w, f, mu],
-                )
-            error[w, f, mu] = estimate
+    total = sets.shape[0]
+    for task in nb.prange((total + WIDTH - 1) // WIDTH):
+        some = sets[task * WIDTH : min((task + 1) * WIDTH, total)]
+        _calculate(p, plan, growth_limit, some, out, error)
 
 
 def thermal_conductance(

@@ -122,13 +122,15 @@ def find_poles(
     poles = Poles(start.z.copy(), start.x.copy(), start.t, start.norm)
     iterate(poles, np.arange(start.z.size), levels, leads, b)
     order, paired, again, twin = right_half(poles, leads)
-    for side in (1.0 - BESIDE, 1.0 + BESIDE):
-        if again >= 0 and paired + order.size == both - 1:
+    if paired + order.size == both:
+        return poles, order, paired
+    if again >= 0 and paired + order.size == both - 1:
+        for side in (1.0 - BESIDE, 1.0 + BESIDE):
             poles.z[again] = poles.z[twin] * side
             poles.x[again], poles.t[again] = start.x[again], 0.0
             _orthogonalise(poles, leads, again, twin)
             iterate(poles, np.full(1, again), levels, leads, b)
-            order, paired, again, twin = right_half(poles, leads)
-    if paired + order.size != both:
-        return poles, order[:0], 0
-    return poles, order, paired
+            whole, with_images, _, _ = right_half(poles, leads)
+            if with_images + whole.size == both:
+                return poles, whole, with_images
+    return poles, order[:0], 0
