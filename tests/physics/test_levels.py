@@ -13,14 +13,14 @@ from disorder_landscape.physics.fast_solver import prepare
 from disorder_landscape.physics.hamiltonian import wire_hamiltonian
 from disorder_landscape.physics.levels import wire_levels
 from disorder_landscape.physics.parameters import BIAS, BOLTZMANN
-from disorder_landscape.physics.simd import (
+from disorder_landscape.physics.vectors import (
     WIDTH,
-    fill,
-    load,
+    everywhere,
+    read,
     roots,
     sizes,
-    store,
     where_greater,
+    write,
 )
 from random_wires import random_wire
 
@@ -28,9 +28,9 @@ from random_wires import random_wire
 def test_vectors():
     @nb.njit
     def calculate(a, b, out):
-        x, y = load(a, 0), load(b, 1)
-        store(out[0], 0, x + y * x - x / y)
-        store(out[1], 0, where_greater(x, y, roots(sizes(x)), fill(2.0)))
+        x, y = read(a, 0), read(b, 1)
+        write(out[0], 0, x + y * x - x / y)
+        write(out[1], 0, where_greater(x, y, roots(sizes(x)), everywhere(2.0)))
 
     rng = np.random.default_rng(0)
     a, b, out = rng.normal(size=WIDTH), rng.normal(size=WIDTH + 1), np.empty((2, WIDTH))

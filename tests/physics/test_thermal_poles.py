@@ -9,7 +9,7 @@ from scipy.special import polygamma
 from disorder_landscape.physics import thermal_poles
 from disorder_landscape.physics.parameters import BOLTZMANN
 from disorder_landscape.physics.residues import Terms, sum_poles
-from disorder_landscape.physics.simd import WIDTH
+from disorder_landscape.physics.vectors import WIDTH
 
 KT = BOLTZMANN * 0.05
 

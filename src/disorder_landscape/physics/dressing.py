@@ -23,7 +23,7 @@ import numpy as np
 from disorder_landscape.physics.hamiltonian import ComplexArray
 from disorder_landscape.physics.levels import invert
 from disorder_landscape.physics.parameters import FloatArray
-from disorder_landscape.physics.simd import WIDTH, fill, load, store
+from disorder_landscape.physics.vectors import WIDTH, everywhere, read, write
 
 CUBIC = 4
 """Nodes, and coefficients, of the cubic for Σ(ω)."""
@@ -106,23 +106,23 @@ def reciprocals(
 ) -> None:  # pragma: no cover
     """Write 1/(z − E) and 1/(z + E), then half their sum and difference; (8, level · WIDTH)."""
     W = WIDTH
-    x, y, one, half = load(zr, 0), load(zi, 0), fill(1.0), fill(0.5)
+    x, y, one, half = read(zr, 0), read(zi, 0), everywhere(1.0), everywhere(0.5)
     p, q, r, s = parts[0], parts[1], parts[2], parts[3]
     even_re, even_im, odd_re, odd_im = parts[4], parts[5], parts[6], parts[7]
-    square, minus = y * y, fill(0.0) - y
+    square, minus = y * y, everywhere(0.0) - y
     for n in range(E.size):
-        level, at = fill(E[n]), n * W
+        level, at = everywhere(E[n]), n * W
         below, above = x - level, x + level
         near, far = one / (below * below + square), one / (above * above + square)
         a, b, c, d = below * near, minus * near, above * far, minus * far
-        store(p, at, a)
-        store(q, at, b)
-        store(r, at, c)
-        store(s, at, d)
-        store(even_re, at, half * (a + c))
-        store(even_im, at, half * (b + d))
-        store(odd_re, at, half * (a - c))
-        store(odd_im, at, half * (b - d))
+        write(p, at, a)
+        write(q, at, b)
+        write(r, at, c)
+        write(s, at, d)
+        write(even_re, at, half * (a + c))
+        write(even_im, at, half * (b + d))
+        write(odd_re, at, half * (a - c))
+        write(odd_im, at, half * (b - d))
 
 
 @nb.njit(cache=True, error_model="numpy")
@@ -130,25 +130,30 @@ def isolated_sums(
     levels: Levels, parts: FloatArray, re: FloatArray, im: FloatArray
 ) -> None:  # pragma: no cover
     """Write G_iso, shape (UPPER · WIDTH,) each, from `reciprocals`; four entries per pass."""
-    W, zero = WIDTH, fill(0.0)
+    W, zero = WIDTH, everywhere(0.0)
     products = levels.products
     for e in range(0, UPPER, 4):
         real, imag = (parts[4], parts[5]) if e < 20 else (parts[6], parts[7])
         a, b, c, d = zero, zero, zero, zero
         f, g, h, k = zero, zero, zero, zero
         for n in range(levels.E.size):
-            row, x, y = products[n], load(real, n * W), load(imag, n * W)
-            q, r, s, t = fill(row[e]), fill(row[e + 1]), fill(row[e + 2]), fill(row[e + 3])
+            row, x, y = products[n], read(real, n * W), read(imag, n * W)
+            q, r, s, t = (
+                everywhere(row[e]),
+                everywhere(row[e + 1]),
+                everywhere(row[e + 2]),
+                everywhere(row[e + 3]),
+            )
             a, b, c, d = a + q * x, b + r * x, c + s * x, d + t * x
             f, g, h, k = f + q * y, g + r * y, h + s * y, k + t * y
-        store(re, e * W, a)
-        store(re, (e + 1) * W, b)
-        store(re, (e + 2) * W, c)
-        store(re, (e + 3) * W, d)
-        store(im, e * W, f)
-        store(im, (e + 1) * W, g)
-        store(im, (e + 2) * W, h)
-        store(im, (e + 3) * W, k)
+        write(re, e * W, a)
+        write(re, (e + 1) * W, b)
+        write(re, (e + 2) * W, c)
+        write(re, (e + 3) * W, d)
+        write(im, e * W, f)
+        write(im, (e + 1) * W, g)
+        write(im, (e + 2) * W, h)
+        write(im, (e + 3) * W, k)
 
 
 @nb.njit(cache=True, error_model="numpy")
@@ -157,7 +162,7 @@ def cubics(
 ) -> None:  # pragma: no cover
     """Write a cubic's values and slopes: (4, 20 · WIDTH), re, im, re, im, ten entries per end."""
     W = WIDTH
-    x, y = load(zr, 0), load(zi, 0)
+    x, y = read(zr, 0), read(zi, 0)
     re, im, slope_re, slope_im = parts[0], parts[1], parts[2], parts[3]
     for end in range(2):
         at = 10 * end * W
@@ -165,16 +170,16 @@ def cubics(
             for j in range(i, 4):
                 a, b = terms[3, end, i, j], terms[2, end, i, j]
                 c, d = terms[1, end, i, j], terms[0, end, i, j]
-                ar, ai = fill(a.real), fill(a.imag)
-                br, bi = fill(b.real), fill(b.imag)
+                ar, ai = everywhere(a.real), everywhere(a.imag)
+                br, bi = everywhere(b.real), everywhere(b.imag)
                 pr, pi = ar * x - ai * y + br, ar * y + ai * x + bi  # az + b
-                cr, ci = fill(c.real), fill(c.imag)
+                cr, ci = everywhere(c.real), everywhere(c.imag)
                 qr, qi = pr * x - pi * y + cr, pr * y + pi * x + ci  # az² + bz + c
-                store(re, at, qr * x - qi * y + fill(d.real))
-                store(im, at, qr * y + qi * x + fill(d.imag))
+                write(re, at, qr * x - qi * y + everywhere(d.real))
+                write(im, at, qr * y + qi * x + everywhere(d.imag))
                 pr, pi = ar * x - ai * y + pr, ar * y + ai * x + pi  # 2az + b
-                store(slope_re, at, qr + pr * x - pi * y)
-                store(slope_im, at, qi + pr * y + pi * x)
+                write(slope_re, at, qr + pr * x - pi * y)
+                write(slope_im, at, qi + pr * y + pi * x)
                 at += W
 
 
@@ -186,40 +191,40 @@ def factor(
 
     Lower entries of L stand at the places of the upper triangle; pivots: (2, 8 · WIDTH).
     """
-    W, one = WIDTH, fill(1.0)
+    W, one = WIDTH, everywhere(1.0)
     size = pivots.shape[1] // W  # 8, but not for the compiler: it would unroll everything
     for at in range(0, UPPER * W, W):
-        store(re, at, fill(0.0) - load(re, at))
-        store(im, at, fill(0.0) - load(im, at))
+        write(re, at, everywhere(0.0) - read(re, at))
+        write(im, at, everywhere(0.0) - read(im, at))
     source = 0
     for end in range(2):
         for i in range(4):
             for j in range(i, 4):
                 at = PLACES[ENDS[end, i], ENDS[end, j]] * W
-                store(re, at, load(re, at) + load(s[0], source))
-                store(im, at, load(im, at) + load(s[1], source))
+                write(re, at, read(re, at) + read(s[0], source))
+                write(im, at, read(im, at) + read(s[1], source))
                 source += W
     for k in range(size):
         at = PLACES[k, k] * W
-        dr, di = load(re, at), load(im, at)
+        dr, di = read(re, at), read(im, at)
         norm = one / (dr * dr + di * di)
-        dr, di = dr * norm, fill(0.0) - di * norm
-        store(pivots[0], k * W, dr)
-        store(pivots[1], k * W, di)
+        dr, di = dr * norm, everywhere(0.0) - di * norm
+        write(pivots[0], k * W, dr)
+        write(pivots[1], k * W, di)
         for i in range(k + 1, size):
             at = PLACES[k, i] * W
-            ar, ai = load(re, at), load(im, at)
+            ar, ai = read(re, at), read(im, at)
             lr, li = ar * dr - ai * di, ar * di + ai * dr
             for j in range(i, size):
-                fr, fi = load(re, PLACES[k, j] * W), load(im, PLACES[k, j] * W)
+                fr, fi = read(re, PLACES[k, j] * W), read(im, PLACES[k, j] * W)
                 to = PLACES[i, j] * W
-                store(re, to, load(re, to) - lr * fr + li * fi)
-                store(im, to, load(im, to) - lr * fi - li * fr)
+                write(re, to, read(re, to) - lr * fr + li * fi)
+                write(im, to, read(im, to) - lr * fi - li * fr)
         for i in range(k + 1, size):
             at = PLACES[k, i] * W
-            ar, ai = load(re, at), load(im, at)
-            store(re, at, ar * dr - ai * di)
-            store(im, at, ar * di + ai * dr)
+            ar, ai = read(re, at), read(im, at)
+            write(re, at, ar * dr - ai * di)
+            write(im, at, ar * di + ai * dr)
 
 
 @nb.njit(cache=True, error_model="numpy")
@@ -230,13 +235,13 @@ def solve_lower(
     W = WIDTH
     size = xr.size // W
     for i in range(1, size):
-        a, b = load(xr, i * W), load(xi, i * W)
+        a, b = read(xr, i * W), read(xi, i * W)
         for k in range(i):
             at = PLACES[k, i] * W
-            lr, li, c, d = load(re, at), load(im, at), load(xr, k * W), load(xi, k * W)
+            lr, li, c, d = read(re, at), read(im, at), read(xr, k * W), read(xi, k * W)
             a, b = a - lr * c + li * d, b - lr * d - li * c
-        store(xr, i * W, a)
-        store(xi, i * W, b)
+        write(xr, i * W, a)
+        write(xi, i * W, b)
 
 
 @nb.njit(cache=True, error_model="numpy")
@@ -248,15 +253,15 @@ def solve(
     size = xr.size // W
     solve_lower(re, im, xr, xi)
     for i in range(size - 1, -1, -1):
-        c, d = load(xr, i * W), load(xi, i * W)
-        pr, pi = load(pivots[0], i * W), load(pivots[1], i * W)
+        c, d = read(xr, i * W), read(xi, i * W)
+        pr, pi = read(pivots[0], i * W), read(pivots[1], i * W)
         a, b = c * pr - d * pi, c * pi + d * pr
         for k in range(i + 1, size):
             at = PLACES[i, k] * W
-            lr, li, c, d = load(re, at), load(im, at), load(xr, k * W), load(xi, k * W)
+            lr, li, c, d = read(re, at), read(im, at), read(xr, k * W), read(xi, k * W)
             a, b = a - lr * c + li * d, b - lr * d - li * c
-        store(xr, i * W, a)
-        store(xi, i * W, b)
+        write(xr, i * W, a)
+        write(xi, i * W, b)
 
 
 @nb.njit(cache=True, error_model="numpy")
@@ -272,12 +277,12 @@ def of_ends(
     W = WIDTH
     for end in range(2):
         for i in range(4):
-            a, b = fill(0.0), fill(0.0)
+            a, b = everywhere(0.0), everywhere(0.0)
             for j in range(4):
                 low, high = min(i, j), max(i, j)
                 at = (10 * end + 4 * low - low * (low - 1) // 2 + high - low) * W
                 to = ENDS[end, j] * W
-                sr, si, c, d = load(s_re, at), load(s_im, at), load(xr, to), load(xi, to)
+                sr, si, c, d = read(s_re, at), read(s_im, at), read(xr, to), read(xi, to)
                 a, b = a + sr * c - si * d, b + sr * d + si * c
-            store(yr, ENDS[end, i] * W, a)
-            store(yi, ENDS[end, i] * W, b)
+            write(yr, ENDS[end, i] * W, a)
+            write(yi, ENDS[end, i] * W, b)

@@ -16,14 +16,14 @@ import numpy as np
 
 from disorder_landscape.physics.loewner import subtract_rows
 from disorder_landscape.physics.parameters import FloatArray
-from disorder_landscape.physics.simd import (
+from disorder_landscape.physics.vectors import (
     WIDTH,
-    fill,
-    load,
+    everywhere,
+    read,
     roots,
     sizes,
-    store,
     where_greater,
+    write,
 )
 
 EPSILON = 2.3e-16
@@ -34,9 +34,9 @@ SWEEPS = 60
 @nb.njit(cache=True, error_model="numpy")
 def _scale_row(M: FloatArray, first: int, last: int, share: FloatArray) -> None:  # pragma: no cover
     """Multiply entries `first` to `last` of M by each set's share."""
-    factor = load(share, 0)
+    factor = read(share, 0)
     for j in range(first * WIDTH, last * WIDTH, WIDTH):
-        store(M, j, load(M, j) * factor)
+        write(M, j, read(M, j) * factor)
 
 
 @nb.njit(cache=True, error_model="numpy")
@@ -59,19 +59,19 @@ def reduce_pencil(
     for k in range(n):
         for j in range(n):
             low, high = min(k, j), max(k, j)
-            store(Y, (k * n + j) * W, load(K, (high * stride + low) * W))
+            write(Y, (k * n + j) * W, read(K, (high * stride + low) * W))
     for k in range(n):
         factors = U[k * stride * W :]
-        store(share, 0, fill(1.0) / load(factors, k * W))
+        write(share, 0, everywhere(1.0) / read(factors, k * W))
         subtract_rows(Y, k, 0, n, factors, k)
         subtract_rows(rows, k, 0, 8, factors, k)
         _scale_row(Y, k * n, (k + 1) * n, share)
         _scale_row(rows, 8 * k, 8 * k + 8, share)
     for k in range(n):
         factors = U[k * stride * W :]
-        store(share, 0, fill(1.0) / load(factors, k * W))
+        write(share, 0, everywhere(1.0) / read(factors, k * W))
         for j in range(k, n):
-            store(A, (k * n + j) * W, load(Y, (j * n + k) * W))
+            write(A, (k * n + j) * W, read(Y, (j * n + k) * W))
         subtract_rows(A, k, k, n, factors, k)
         _scale_row(A, k * n + k, (k + 1) * n, share)
 
@@ -85,18 +85,18 @@ def _reflector(
     Where no other is left β = 0: then sets of smaller rank are untouched by the others.
     """
     W = WIDTH
-    zero, one, head = fill(0.0), fill(1.0), load(A, (k * n + k + 1) * W)
+    zero, one, head = everywhere(0.0), everywhere(1.0), read(A, (k * n + k + 1) * W)
     tail = zero
     for j in range(k + 2, n):
-        entry = load(A, (k * n + j) * W)
+        entry = read(A, (k * n + j) * W)
         tail = tail + entry * entry
-        store(new, j * W, entry)
+        write(new, j * W, entry)
     norm = roots(tail + head * head)
     alpha = where_greater(head, zero, zero - norm, norm)
     alpha = where_greater(tail, zero, alpha, head)
-    store(off, k * W, alpha)
-    store(new, (k + 1) * W, head - alpha)
-    store(beta, 0, where_greater(tail, zero, one / (norm * (norm + sizes(head))), zero))
+    write(off, k * W, alpha)
+    write(new, (k + 1) * W, head - alpha)
+    write(beta, 0, where_greater(tail, zero, one / (norm * (norm + sizes(head))), zero))
 
 
 @nb.njit(cache=True, error_model="numpy")
@@ -112,19 +112,19 @@ def _update_and_multiply(
     """Subtract v pᵀ + p vᵀ from A[first:, first:] and multiply it by `new`, in one pass over A."""
     W = WIDTH
     for j in range(first * W, n * W, W):
-        store(product, j, fill(0.0))
+        write(product, j, everywhere(0.0))
     for i in range(first, n):
-        vi, pi, ni = load(v, i * W), load(p, i * W), load(new, i * W)
+        vi, pi, ni = read(v, i * W), read(p, i * W), read(new, i * W)
         at = i * n * W
-        diagonal = load(A, at + i * W) - vi * pi - vi * pi
-        store(A, at + i * W, diagonal)
-        total = load(product, i * W) + diagonal * ni
+        diagonal = read(A, at + i * W) - vi * pi - vi * pi
+        write(A, at + i * W, diagonal)
+        total = read(product, i * W) + diagonal * ni
         for j in range((i + 1) * W, n * W, W):
-            entry = load(A, at + j) - vi * load(p, j) - pi * load(v, j)
-            store(A, at + j, entry)
-            total = total + entry * load(new, j)
-            store(product, j, load(product, j) + entry * ni)
-        store(product, i * W, total)
+            entry = read(A, at + j) - vi * read(p, j) - pi * read(v, j)
+            write(A, at + j, entry)
+            total = total + entry * read(new, j)
+            write(product, j, read(product, j) + entry * ni)
+        write(product, i * W, total)
 
 
 @nb.njit(cache=True, error_model="numpy")
@@ -134,13 +134,13 @@ def _reflect_rows(
     """Apply the reflection to the 8 columns of rows."""
     W = WIDTH
     for c in range(0, 8 * W, W):
-        total = fill(0.0)
+        total = everywhere(0.0)
         for j in range(first, n):
-            total = total + load(new, j * W) * load(rows, 8 * j * W + c)
-        total = total * load(beta, 0)
+            total = total + read(new, j * W) * read(rows, 8 * j * W + c)
+        total = total * read(beta, 0)
         for j in range(first, n):
             at = 8 * j * W + c
-            store(rows, at, load(rows, at) - load(new, j * W) * total)
+            write(rows, at, read(rows, at) - read(new, j * W) * total)
 
 
 @nb.njit(cache=True, error_model="numpy")
@@ -152,25 +152,25 @@ def tridiagonalise(
     v, p, new, product = np.zeros(n * W), np.zeros(n * W), np.zeros(n * W), np.empty(n * W)
     beta = np.empty(W)
     for k in range(n):
-        vk, pk = load(v, k * W), load(p, k * W)
+        vk, pk = read(v, k * W), read(p, k * W)
         for j in range(k, n):  # the previous reflection, of row k
             at = (k * n + j) * W
-            store(A, at, load(A, at) - vk * load(p, j * W) - pk * load(v, j * W))
-        store(diagonal, k * W, load(A, (k * n + k) * W))
+            write(A, at, read(A, at) - vk * read(p, j * W) - pk * read(v, j * W))
+        write(diagonal, k * W, read(A, (k * n + k) * W))
         if k == n - 1:
             break
         _reflector(A, k, n, new, off, beta)
         _update_and_multiply(A, k + 1, n, v, p, new, product)
-        overlap, share = fill(0.0), load(beta, 0)
+        overlap, share = everywhere(0.0), read(beta, 0)
         for j in range((k + 1) * W, n * W, W):
-            entry = load(product, j) * share
-            store(product, j, entry)
-            overlap = overlap + entry * load(new, j)
-        overlap = overlap * share * fill(0.5)
+            entry = read(product, j) * share
+            write(product, j, entry)
+            overlap = overlap + entry * read(new, j)
+        overlap = overlap * share * everywhere(0.5)
         for j in range((k + 1) * W, n * W, W):
-            entry = load(new, j)
-            store(v, j, entry)
-            store(p, j, load(product, j) - overlap * entry)
+            entry = read(new, j)
+            write(v, j, entry)
+            write(p, j, read(product, j) - overlap * entry)
         _reflect_rows(rows, k + 1, n, new, beta)
 
 
@@ -180,11 +180,11 @@ def _split(
 ) -> int:  # pragma: no cover
     """Write where each set's matrix first falls apart from `first` on; return the last of them."""
     W = WIDTH
-    at, tiny = fill(float(n - 1)), fill(EPSILON)
+    at, tiny = everywhere(float(n - 1)), everywhere(EPSILON)
     for k in range(n - 2, first - 1, -1):
-        around = sizes(load(diagonal, k * W)) + sizes(load(diagonal, (k + 1) * W))
-        at = where_greater(sizes(load(off, k * W)), tiny * around, at, fill(float(k)))
-    store(end, 0, at)
+        around = sizes(read(diagonal, k * W)) + sizes(read(diagonal, (k + 1) * W))
+        at = where_greater(sizes(read(off, k * W)), tiny * around, at, everywhere(float(k)))
+    write(end, 0, at)
     last = first
     for l in range(W):
         last = max(last, int(end[l]))
@@ -203,24 +203,24 @@ def _sweep(
 ) -> None:  # pragma: no cover
     """Chase each set's bulge from its end to `first`, carrying the row that turns next along."""
     W = WIDTH
-    zero, one, until = fill(0.0), fill(1.0), load(end, 0)
-    s, c, p, g = one, one, zero, load(shifted, 0)
+    zero, one, until = everywhere(0.0), everywhere(1.0), read(end, 0)
+    s, c, p, g = one, one, zero, read(shifted, 0)
     at = 8 * last * W
     r0, r1, r2, r3 = (
-        load(rows, at),
-        load(rows, at + W),
-        load(rows, at + 2 * W),
-        load(rows, at + 3 * W),
+        read(rows, at),
+        read(rows, at + W),
+        read(rows, at + 2 * W),
+        read(rows, at + 3 * W),
     )
     r4, r5, r6, r7 = (
-        load(rows, at + 4 * W),
-        load(rows, at + 5 * W),
-        load(rows, at + 6 * W),
-        load(rows, at + 7 * W),
+        read(rows, at + 4 * W),
+        read(rows, at + 5 * W),
+        read(rows, at + 6 * W),
+        read(rows, at + 7 * W),
     )
     for i in range(last - 1, first - 1, -1):
-        here = fill(float(i))
-        entry, d, below = load(off, i * W), load(diagonal, i * W), load(diagonal, (i + 1) * W)
+        here = everywhere(float(i))
+        entry, d, below = read(off, i * W), read(diagonal, i * W), read(diagonal, (i + 1) * W)
         f, b = s * entry, c * entry
         square = f * f + g * g
         r = roots(square)
@@ -230,49 +230,49 @@ def _sweep(
         h = below - p
         x = (d - h) * sine + (b + b) * cosine
         q = sine * x
-        store(off, (i + 1) * W, where_greater(until, here, r, load(off, (i + 1) * W)))
-        store(diagonal, (i + 1) * W, where_greater(until, here, h + q, below))
+        write(off, (i + 1) * W, where_greater(until, here, r, read(off, (i + 1) * W)))
+        write(diagonal, (i + 1) * W, where_greater(until, here, h + q, below))
         g = where_greater(until, here, cosine * x - b, g)
         p = where_greater(until, here, q, p)
         s, c = where_greater(until, here, sine, s), where_greater(until, here, cosine, c)
         sine, cosine = where_greater(until, here, sine, zero), where_greater(until, here, c, one)
         at = 8 * i * W
         q0, q1, q2, q3 = (
-            load(rows, at),
-            load(rows, at + W),
-            load(rows, at + 2 * W),
-            load(rows, at + 3 * W),
+            read(rows, at),
+            read(rows, at + W),
+            read(rows, at + 2 * W),
+            read(rows, at + 3 * W),
         )
         q4, q5, q6, q7 = (
-            load(rows, at + 4 * W),
-            load(rows, at + 5 * W),
-            load(rows, at + 6 * W),
-            load(rows, at + 7 * W),
+            read(rows, at + 4 * W),
+            read(rows, at + 5 * W),
+            read(rows, at + 6 * W),
+            read(rows, at + 7 * W),
         )
-        store(rows, at + 8 * W, sine * q0 + cosine * r0)
-        store(rows, at + 9 * W, sine * q1 + cosine * r1)
-        store(rows, at + 10 * W, sine * q2 + cosine * r2)
-        store(rows, at + 11 * W, sine * q3 + cosine * r3)
-        store(rows, at + 12 * W, sine * q4 + cosine * r4)
-        store(rows, at + 13 * W, sine * q5 + cosine * r5)
-        store(rows, at + 14 * W, sine * q6 + cosine * r6)
-        store(rows, at + 15 * W, sine * q7 + cosine * r7)
+        write(rows, at + 8 * W, sine * q0 + cosine * r0)
+        write(rows, at + 9 * W, sine * q1 + cosine * r1)
+        write(rows, at + 10 * W, sine * q2 + cosine * r2)
+        write(rows, at + 11 * W, sine * q3 + cosine * r3)
+        write(rows, at + 12 * W, sine * q4 + cosine * r4)
+        write(rows, at + 13 * W, sine * q5 + cosine * r5)
+        write(rows, at + 14 * W, sine * q6 + cosine * r6)
+        write(rows, at + 15 * W, sine * q7 + cosine * r7)
         r0, r1 = cosine * q0 - sine * r0, cosine * q1 - sine * r1
         r2, r3 = cosine * q2 - sine * r2, cosine * q3 - sine * r3
         r4, r5 = cosine * q4 - sine * r4, cosine * q5 - sine * r5
         r6, r7 = cosine * q6 - sine * r6, cosine * q7 - sine * r7
     at = 8 * first * W
-    store(rows, at, r0)
-    store(rows, at + W, r1)
-    store(rows, at + 2 * W, r2)
-    store(rows, at + 3 * W, r3)
-    store(rows, at + 4 * W, r4)
-    store(rows, at + 5 * W, r5)
-    store(rows, at + 6 * W, r6)
-    store(rows, at + 7 * W, r7)
-    here, at = fill(float(first)), first * W
-    store(diagonal, at, load(diagonal, at) - p)  # p = 0 where nothing was to do
-    store(off, at, where_greater(until, here, g, load(off, at)))
+    write(rows, at, r0)
+    write(rows, at + W, r1)
+    write(rows, at + 2 * W, r2)
+    write(rows, at + 3 * W, r3)
+    write(rows, at + 4 * W, r4)
+    write(rows, at + 5 * W, r5)
+    write(rows, at + 6 * W, r6)
+    write(rows, at + 7 * W, r7)
+    here, at = everywhere(float(first)), first * W
+    write(diagonal, at, read(diagonal, at) - p)  # p = 0 where nothing was to do
+    write(off, at, where_greater(until, here, g, read(off, at)))
 
 
 @nb.njit(cache=True, error_model="numpy")
@@ -285,7 +285,7 @@ def tridiagonal_levels(
     """
     W = WIDTH
     end, shifted = np.empty(W), np.empty(W)
-    store(off, (n - 1) * W, fill(0.0))
+    write(off, (n - 1) * W, everywhere(0.0))
     for first in range(n):
         for sweep in range(SWEEPS + 1):
             last = _split(diagonal, off, first, n, end)

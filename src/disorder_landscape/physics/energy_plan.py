@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 
 from disorder_landscape.physics.dressing import CUBIC
 from disorder_landscape.physics.parameters import FloatArray, Nanowire
-from disorder_landscape.physics.simd import WIDTH
 from disorder_landscape.physics.thermal_poles import (
     REACH,
     chebyshev_nodes,
     interpolation_weights,
     thermal_node_weights,
 )
+from disorder_landscape.physics.vectors import WIDTH
 
 CHECKS = 4
 """Energies at which the model is compared with the solver."""

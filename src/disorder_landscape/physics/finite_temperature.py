@@ -41,7 +41,7 @@ from disorder_landscape.physics.recursion import (
     eliminate_inner_sites,
     eliminate_inner_sites_with_slopes,
 )
-from disorder_landscape.physics.simd import WIDTH
+from disorder_landscape.physics.vectors import WIDTH
 
 DROP = 1e-11
 """Directions of which less than this (squared, relative) is new are left out of the model."""

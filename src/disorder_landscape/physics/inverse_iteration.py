@@ -30,7 +30,7 @@ from disorder_landscape.physics.dressing import (
 )
 from disorder_landscape.physics.hamiltonian import ComplexArray
 from disorder_landscape.physics.parameters import FloatArray
-from disorder_landscape.physics.simd import WIDTH, fill, load, store
+from disorder_landscape.physics.vectors import WIDTH, everywhere, read, write
 
 FAINT = 1e-9
 """Widths below this (meV) carry no conductance and need no digits."""
@@ -82,8 +82,8 @@ def new_batch(levels: int) -> Batch:  # pragma: no cover
 @nb.njit(cache=True, error_model="numpy")
 def _apply_resolvent(levels: Levels, b: Batch) -> None:  # pragma: no cover
     """Replace x by R x, keep x in parts that are no longer needed; write U R x to t."""
-    W, zero = WIDTH, fill(0.0)
-    share = load(b.scale, 0)
+    W, zero = WIDTH, everywhere(0.0)
+    share = read(b.scale, 0)
     a0, a1, a2, a3, a4, a5, a6, a7 = zero, zero, zero, zero, zero, zero, zero, zero
     c0, c1, c2, c3, c4, c5, c6, c7 = zero, zero, zero, zero, zero, zero, zero, zero
     x0, x1, x2, x3 = b.x[0], b.x[1], b.x[2], b.x[3]
@@ -91,45 +91,45 @@ def _apply_resolvent(levels: Levels, b: Batch) -> None:  # pragma: no cover
     o0, o1, o2, o3 = b.parts[4], b.parts[5], b.parts[6], b.parts[7]
     for n in range(levels.E.size):
         at, w = n * W, levels.weight[n]
-        re, im = load(x0, at) * share, load(x1, at) * share
-        store(o0, at, re)
-        store(o1, at, im)
-        pr, pi = load(p0, at), load(p1, at)
+        re, im = read(x0, at) * share, read(x1, at) * share
+        write(o0, at, re)
+        write(o1, at, im)
+        pr, pi = read(p0, at), read(p1, at)
         ur, ui = re * pr - im * pi, re * pi + im * pr
-        re, im = load(x2, at) * share, load(x3, at) * share
-        store(o2, at, re)
-        store(o3, at, im)
-        pr, pi = load(p2, at), load(p3, at)
+        re, im = read(x2, at) * share, read(x3, at) * share
+        write(o2, at, re)
+        write(o3, at, im)
+        pr, pi = read(p2, at), read(p3, at)
         dr, di = re * pr - im * pi, re * pi + im * pr
-        store(x0, at, ur)
-        store(x1, at, ui)
-        store(x2, at, dr)
-        store(x3, at, di)
+        write(x0, at, ur)
+        write(x1, at, ui)
+        write(x2, at, dr)
+        write(x3, at, di)
         re, im = ur + dr, ui + di
-        w0, w1, w2, w3 = fill(w[0]), fill(w[1]), fill(w[2]), fill(w[3])
+        w0, w1, w2, w3 = everywhere(w[0]), everywhere(w[1]), everywhere(w[2]), everywhere(w[3])
         a0, a1, a2, a3 = a0 + w0 * re, a1 + w1 * re, a2 + w2 * re, a3 + w3 * re
         c0, c1, c2, c3 = c0 + w0 * im, c1 + w1 * im, c2 + w2 * im, c3 + w3 * im
         re, im = ur - dr, ui - di
-        w0, w1, w2, w3 = fill(w[4]), fill(w[5]), fill(w[6]), fill(w[7])
+        w0, w1, w2, w3 = everywhere(w[4]), everywhere(w[5]), everywhere(w[6]), everywhere(w[7])
         a4, a5, a6, a7 = a4 + w0 * re, a5 + w1 * re, a6 + w2 * re, a7 + w3 * re
         c4, c5, c6, c7 = c4 + w0 * im, c5 + w1 * im, c6 + w2 * im, c7 + w3 * im
     tr, ti = b.t[0], b.t[1]
-    store(tr, 0, a0)
-    store(tr, W, a1)
-    store(tr, 2 * W, a2)
-    store(tr, 3 * W, a3)
-    store(tr, 4 * W, a4)
-    store(tr, 5 * W, a5)
-    store(tr, 6 * W, a6)
-    store(tr, 7 * W, a7)
-    store(ti, 0, c0)
-    store(ti, W, c1)
-    store(ti, 2 * W, c2)
-    store(ti, 3 * W, c3)
-    store(ti, 4 * W, c4)
-    store(ti, 5 * W, c5)
-    store(ti, 6 * W, c6)
-    store(ti, 7 * W, c7)
+    write(tr, 0, a0)
+    write(tr, W, a1)
+    write(tr, 2 * W, a2)
+    write(tr, 3 * W, a3)
+    write(tr, 4 * W, a4)
+    write(tr, 5 * W, a5)
+    write(tr, 6 * W, a6)
+    write(tr, 7 * W, a7)
+    write(ti, 0, c0)
+    write(ti, W, c1)
+    write(ti, 2 * W, c2)
+    write(ti, 3 * W, c3)
+    write(ti, 4 * W, c4)
+    write(ti, 5 * W, c5)
+    write(ti, 6 * W, c6)
+    write(ti, 7 * W, c7)
 
 
 @nb.njit(cache=True, error_model="numpy")
@@ -137,59 +137,64 @@ def _add_mixed(levels: Levels, b: Batch, overlap: FloatArray) -> None:  # pragma
     """Add R Uᵀ t to x; write xᵀx to norm and its product with the x kept to overlap."""
     W = WIDTH
     tr, ti = b.t[0], b.t[1]
-    r0, r1, r2, r3 = load(tr, 0), load(tr, W), load(tr, 2 * W), load(tr, 3 * W)
-    r4, r5, r6, r7 = load(tr, 4 * W), load(tr, 5 * W), load(tr, 6 * W), load(tr, 7 * W)
-    i0, i1, i2, i3 = load(ti, 0), load(ti, W), load(ti, 2 * W), load(ti, 3 * W)
-    i4, i5, i6, i7 = load(ti, 4 * W), load(ti, 5 * W), load(ti, 6 * W), load(ti, 7 * W)
+    r0, r1, r2, r3 = read(tr, 0), read(tr, W), read(tr, 2 * W), read(tr, 3 * W)
+    r4, r5, r6, r7 = read(tr, 4 * W), read(tr, 5 * W), read(tr, 6 * W), read(tr, 7 * W)
+    i0, i1, i2, i3 = read(ti, 0), read(ti, W), read(ti, 2 * W), read(ti, 3 * W)
+    i4, i5, i6, i7 = read(ti, 4 * W), read(ti, 5 * W), read(ti, 6 * W), read(ti, 7 * W)
     x0, x1, x2, x3 = b.x[0], b.x[1], b.x[2], b.x[3]
     p0, p1, p2, p3 = b.parts[0], b.parts[1], b.parts[2], b.parts[3]
     o0, o1, o2, o3 = b.parts[4], b.parts[5], b.parts[6], b.parts[7]
-    norm_re, norm_im, over_re, over_im = fill(0.0), fill(0.0), fill(0.0), fill(0.0)
+    norm_re, norm_im, over_re, over_im = (
+        everywhere(0.0),
+        everywhere(0.0),
+        everywhere(0.0),
+        everywhere(0.0),
+    )
     for n in range(levels.E.size):
         at, w = n * W, levels.weight[n]
-        w0, w1, w2, w3 = fill(w[0]), fill(w[1]), fill(w[2]), fill(w[3])
+        w0, w1, w2, w3 = everywhere(w[0]), everywhere(w[1]), everywhere(w[2]), everywhere(w[3])
         er, ei = w0 * r0 + w1 * r1 + w2 * r2 + w3 * r3, w0 * i0 + w1 * i1 + w2 * i2 + w3 * i3
-        w0, w1, w2, w3 = fill(w[4]), fill(w[5]), fill(w[6]), fill(w[7])
+        w0, w1, w2, w3 = everywhere(w[4]), everywhere(w[5]), everywhere(w[6]), everywhere(w[7])
         fr, fi = w0 * r4 + w1 * r5 + w2 * r6 + w3 * r7, w0 * i4 + w1 * i5 + w2 * i6 + w3 * i7
-        pr, pi, re, im = load(p0, at), load(p1, at), er + fr, ei + fi
-        ur, ui = load(x0, at) + re * pr - im * pi, load(x1, at) + re * pi + im * pr
-        pr, pi, re, im = load(p2, at), load(p3, at), er - fr, ei - fi
-        dr, di = load(x2, at) + re * pr - im * pi, load(x3, at) + re * pi + im * pr
-        store(x0, at, ur)
-        store(x1, at, ui)
-        store(x2, at, dr)
-        store(x3, at, di)
+        pr, pi, re, im = read(p0, at), read(p1, at), er + fr, ei + fi
+        ur, ui = read(x0, at) + re * pr - im * pi, read(x1, at) + re * pi + im * pr
+        pr, pi, re, im = read(p2, at), read(p3, at), er - fr, ei - fi
+        dr, di = read(x2, at) + re * pr - im * pi, read(x3, at) + re * pi + im * pr
+        write(x0, at, ur)
+        write(x1, at, ui)
+        write(x2, at, dr)
+        write(x3, at, di)
         norm_re = norm_re + ur * ur - ui * ui + dr * dr - di * di
         norm_im = norm_im + ur * ui + dr * di
-        pr, pi, re, im = load(o0, at), load(o1, at), load(o2, at), load(o3, at)
+        pr, pi, re, im = read(o0, at), read(o1, at), read(o2, at), read(o3, at)
         over_re = over_re + ur * pr - ui * pi + dr * re - di * im
         over_im = over_im + ur * pi + ui * pr + dr * im + di * re
-    store(b.norm, 0, norm_re)
-    store(b.norm, W, norm_im + norm_im)
-    store(overlap, 0, over_re)
-    store(overlap, W, over_im)
+    write(b.norm, 0, norm_re)
+    write(b.norm, W, norm_im + norm_im)
+    write(overlap, 0, over_re)
+    write(overlap, W, over_im)
 
 
 @nb.njit(cache=True, error_model="numpy")
 def _add_slope(b: Batch) -> None:  # pragma: no cover
     """Add tᵀS't to the norm."""
-    W, two = WIDTH, fill(2.0)
-    re, im = load(b.norm, 0), load(b.norm, W)
+    W, two = WIDTH, everywhere(2.0)
+    re, im = read(b.norm, 0), read(b.norm, W)
     tr, ti, slope_re, slope_im = b.t[0], b.t[1], b.s[2], b.s[3]
     at = 0
     for end in range(2):
         for i in range(4):
-            ar, ai = load(tr, ENDS[end, i] * W), load(ti, ENDS[end, i] * W)
+            ar, ai = read(tr, ENDS[end, i] * W), read(ti, ENDS[end, i] * W)
             for j in range(i, 4):
-                cr, ci = load(tr, ENDS[end, j] * W), load(ti, ENDS[end, j] * W)
+                cr, ci = read(tr, ENDS[end, j] * W), read(ti, ENDS[end, j] * W)
                 pr, pi = ar * cr - ai * ci, ar * ci + ai * cr
-                sr, si = load(slope_re, at), load(slope_im, at)
+                sr, si = read(slope_re, at), read(slope_im, at)
                 if i != j:
                     pr, pi = two * pr, two * pi
                 re, im = re + sr * pr - si * pi, im + sr * pi + si * pr
                 at += W
-    store(b.norm, 0, re)
-    store(b.norm, W, im)
+    write(b.norm, 0, re)
+    write(b.norm, W, im)
 
 
 @nb.njit(cache=True, error_model="numpy")

@@ -30,7 +30,7 @@ from disorder_landscape.physics.hamiltonian import ComplexArray
 from disorder_landscape.physics.loewner import independent_directions, resolvents
 from disorder_landscape.physics.parameters import FloatArray
 from disorder_landscape.physics.recursion import C_AT, D_AT, E_AT, LANES, SLOPES
-from disorder_landscape.physics.simd import WIDTH
+from disorder_landscape.physics.vectors import WIDTH
 
 LOW = 1e-3
 """Below this energy in meV completeness tells b of the lowest level better than Eb does."""

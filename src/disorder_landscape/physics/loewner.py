@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from disorder_landscape.physics.parameters import FloatArray
-from disorder_landscape.physics.simd import WIDTH, fill, load, store, where_greater
+from disorder_landscape.physics.vectors import WIDTH, everywhere, read, where_greater, write
 
 
 @nb.njit(cache=True, error_model="numpy")
@@ -66,16 +66,16 @@ def _pencil_rows(
             work[at_own + j * W + l] = own[j]
         work[at_x + l] = omega[node] ** 2
         work[at_scale + l] = scale[direction * W + l] if chosen[l] >= 0 else 0.0
-    x, own_scale = load(work, at_x), load(work, at_scale)
+    x, own_scale = read(work, at_x), read(work, at_scale)
     for k in range(nodes):
-        over = fill(1.0) / (fill(omega[k] ** 2) - x)
+        over = everywhere(1.0) / (everywhere(omega[k] ** 2) - x)
         for j in range(8):
             at = (8 * k + j) * W
-            other = load(work, at)
-            product = (load(work, at_own + j * W) - other) * over
-            factor = own_scale * load(scale, at)
-            store(N, at, product * factor)
-            store(K, at, (x * product - other) * factor)
+            other = read(work, at)
+            product = (read(work, at_own + j * W) - other) * over
+            factor = own_scale * read(scale, at)
+            write(N, at, product * factor)
+            write(K, at, (x * product - other) * factor)
     for l in range(W):  # with itself, where 0/0 stands
         direction = max(chosen[l], 0)
         node, i = direction // 8, direction % 8
@@ -99,16 +99,16 @@ def subtract_rows(
     while i + 4 <= count:
         a, b = i * stride, (i + 1) * stride
         c, d = (i + 2) * stride, (i + 3) * stride
-        e, f = load(factors, i * W), load(factors, (i + 1) * W)
-        g, h = load(factors, (i + 2) * W), load(factors, (i + 3) * W)
+        e, f = read(factors, i * W), read(factors, (i + 1) * W)
+        g, h = read(factors, (i + 2) * W), read(factors, (i + 3) * W)
         for j in range(first * W, stride, W):
-            total = load(M, at + j) - e * load(M, a + j) - f * load(M, b + j)
-            store(M, at + j, total - g * load(M, c + j) - h * load(M, d + j))
+            total = read(M, at + j) - e * read(M, a + j) - f * read(M, b + j)
+            write(M, at + j, total - g * read(M, c + j) - h * read(M, d + j))
         i += 4
     while i < count:
-        a, e = i * stride, load(factors, i * W)
+        a, e = i * stride, read(factors, i * W)
         for j in range(first * W, stride, W):
-            store(M, at + j, load(M, at + j) - e * load(M, a + j))
+            write(M, at + j, read(M, at + j) - e * read(M, a + j))
         i += 1
 
 
@@ -151,12 +151,12 @@ def independent_directions(
         for i in range(n):
             scale[i * W + l] = 1.0 / np.sqrt(norm[l, i // 8, i % 8, i % 8])
     for k in range(n):
-        top, at = fill(drop), fill(-1.0)
+        top, at = everywhere(drop), everywhere(-1.0)
         for i in range(n):
-            pivot, here = load(pivots, i * W), fill(float(i))
+            pivot, here = read(pivots, i * W), everywhere(float(i))
             at = where_greater(pivot, top, here, at)
             top = where_greater(pivot, top, pivot, top)
-        store(best, 0, at)
+        write(best, 0, at)
         most = -1
         for l in range(W):
             chosen[l] = int(best[l])
@@ -179,17 +179,17 @@ def independent_directions(
             for c in range(8):
                 b[(8 * k + c) * W + l] = factor * phi[l, direction // 8, direction % 8, c]
         for j in range(0, n * W, W):
-            store(R, first + j, load(row, j))
+            write(R, first + j, read(row, j))
         subtract_rows(R, k, 0, n, U[first:], k)
         for l in range(W):
             pivot = np.sqrt(R[first + order[k * W + l] * W + l]) if chosen[l] >= 0 else 1.0
             U[first + k * W + l] = pivot
             root[l] = 1.0 / pivot
-        share = load(root, 0)
+        share = read(root, 0)
         for j in range(0, n * W, W):
-            entry = load(R, first + j) * share
-            store(R, first + j, entry)
-            store(pivots, j, load(pivots, j) - entry * entry)
+            entry = read(R, first + j) * share
+            write(R, first + j, entry)
+            write(pivots, j, read(pivots, j) - entry * entry)
         for l in range(W):
             if chosen[l] >= 0:
                 pivots[chosen[l] * W + l] = -1.0

@@ -27,8 +27,8 @@ from disorder_landscape.physics.parameters import FloatArray
 from disorder_landscape.physics.pole_starts import start_poles
 from disorder_landscape.physics.residues import Terms, conductance_terms, sum_poles
 from disorder_landscape.physics.resonances import find_poles
-from disorder_landscape.physics.simd import WIDTH, fill, load, store
 from disorder_landscape.physics.thermal_poles import average_poles
+from disorder_landscape.physics.vectors import WIDTH, everywhere, read, write
 
 ROUGHNESS = 10.0
 """Estimated error over the smooth part's largest mismatch at the checks."""
@@ -162,19 +162,22 @@ def _mismatch(
     for i in range(8):
         for j in range(i, 8):
             at = i * W
-            re, im = fill(0.0) - load(same_end[j, 0], at), fill(0.0) - load(same_end[j, 1], at)
+            re, im = (
+                everywhere(0.0) - read(same_end[j, 0], at),
+                everywhere(0.0) - read(same_end[j, 1], at),
+            )
             for at in range(0, 8 * W, W):
                 ar, ai, br, bi = (
-                    load(f[i, 0], at),
-                    load(f[i, 1], at),
-                    load(f[j, 0], at),
-                    load(f[j, 1], at),
+                    read(f[i, 0], at),
+                    read(f[i, 1], at),
+                    read(f[j, 0], at),
+                    read(f[j, 1], at),
                 )
-                dr, di = load(b.pivots[0], at), load(b.pivots[1], at)
+                dr, di = read(b.pivots[0], at), read(b.pivots[1], at)
                 qr, qi = ar * br - ai * bi, ar * bi + ai * br
                 re, im = re + qr * dr - qi * di, im + qr * di + qi * dr
-            store(here[0], 0, re)
-            store(here[1], 0, im)
+            write(here[0], 0, re)
+            write(here[1], 0, im)
             for k in range(CHECKS):
                 off = abs(complex(here[0, k], here[1, k]) - green[k, i, j]) * shares[k]
                 if not off <= worst:  # so that NaN counts

@@ -30,7 +30,7 @@ from disorder_landscape.physics.dressing import (
 )
 from disorder_landscape.physics.inverse_iteration import Batch, Poles
 from disorder_landscape.physics.parameters import FloatArray
-from disorder_landscape.physics.simd import WIDTH, fill, load, store
+from disorder_landscape.physics.vectors import WIDTH, everywhere, read, write
 
 PAIRS = np.array([[0, 1], [2, 3], [0, 2], [1, 3], [0, 3], [1, 2]])
 """Pairs of channel sets Le, Lh, Re, Rh: Andreev at L, at R, then ee, hh, eh, he."""
@@ -67,20 +67,20 @@ def _split_channels(y: FloatArray, c: FloatArray) -> None:  # pragma: no cover
 
     The electrons' part of (c₊, c₋) is (c₊ + c₋, c₊ + c₋)/2, the holes' (c₊ − c₋, c₋ − c₊)/2.
     """
-    W, half, zero = WIDTH, fill(0.5), fill(0.0)
+    W, half, zero = WIDTH, everywhere(0.5), everywhere(0.0)
     for part in range(2):
         for channel in range(4):
             for i in range(8):
-                store(c[channel, part], i * W, zero)
+                write(c[channel, part], i * W, zero)
         for end in range(2):
             for i in range(2):
                 at, to = (2 * end + i) * W, (4 + 2 * end + i) * W
-                p, q = load(y[part], at), load(y[part], to)
+                p, q = read(y[part], at), read(y[part], to)
                 even, odd = half * (p + q), half * (p - q)
-                store(c[2 * end, part], at, even)
-                store(c[2 * end, part], to, even)
-                store(c[2 * end + 1, part], at, odd)
-                store(c[2 * end + 1, part], to, zero - odd)
+                write(c[2 * end, part], at, even)
+                write(c[2 * end, part], to, even)
+                write(c[2 * end + 1, part], at, odd)
+                write(c[2 * end + 1, part], to, zero - odd)
 
 
 @nb.njit(cache=True, error_model="numpy")
@@ -98,26 +98,26 @@ def _amplitudes(
         g = f[channel]
         of_ends(b.s[0], b.s[1], c[channel, 0], c[channel, 1], g[0], g[1])
     for end in range(2):  # −c_a S̄ c_b, for channels on one end
-        re, im = fill(0.0), fill(0.0)
+        re, im = everywhere(0.0), everywhere(0.0)
         a, g = c[2 * end], f[2 * end + 1]
         for i in range(4):
             at = ENDS[end, i] * W
-            ar, ai, br, bi = load(a[0], at), load(a[1], at), load(g[0], at), load(g[1], at)
+            ar, ai, br, bi = read(a[0], at), read(a[1], at), read(g[0], at), read(g[1], at)
             re, im = re - ar * br + ai * bi, im - ar * bi - ai * br
-        store(start[end], 0, re)
-        store(start[6 + end], 0, im)
+        write(start[end], 0, re)
+        write(start[6 + end], 0, im)
     for channel in range(4):
         solve_lower(b.re, b.im, f[channel, 0], f[channel, 1])
     for pair in range(6):
         g, h = f[PAIRS[pair, 0]], f[PAIRS[pair, 1]]
-        re, im = load(start[pair], 0), load(start[6 + pair], 0)
+        re, im = read(start[pair], 0), read(start[6 + pair], 0)
         for at in range(0, 8 * W, W):
-            ar, ai, br, bi = load(g[0], at), load(g[1], at), load(h[0], at), load(h[1], at)
-            dr, di = load(b.pivots[0], at), load(b.pivots[1], at)
+            ar, ai, br, bi = read(g[0], at), read(g[1], at), read(h[0], at), read(h[1], at)
+            dr, di = read(b.pivots[0], at), read(b.pivots[1], at)
             qr, qi = ar * br - ai * bi, ar * bi + ai * br
             re, im = re + qr * dr - qi * di, im + qr * di + qi * dr
-        store(p[pair], 0, re)
-        store(p[6 + pair], 0, im)
+        write(p[pair], 0, re)
+        write(p[6 + pair], 0, im)
 
 
 @nb.njit(cache=True, error_model="numpy")
@@ -167,26 +167,26 @@ def sum_poles(omega: FloatArray, terms: Terms, out: FloatArray) -> None:  # prag
 
     A mirror image −z* has the residue −r̄* of the other incident charge. The ω fill vectors.
     """
-    W, two = WIDTH, fill(2.0)
+    W, two = WIDTH, everywhere(2.0)
     for first in range(0, omega.size, W):
-        w = load(omega, first)
-        s0, s1, s2, s3 = fill(0.0), fill(0.0), fill(0.0), fill(0.0)
+        w = read(omega, first)
+        s0, s1, s2, s3 = everywhere(0.0), everywhere(0.0), everywhere(0.0), everywhere(0.0)
         for k in range(terms.zr.size):
-            x, y = fill(terms.zr[k]), fill(terms.zi[k])
+            x, y = everywhere(terms.zr[k]), everywhere(terms.zi[k])
             below, above, square = w - x, w + x, y * y
             norm = two / (below * below + square)
             c, d = below * norm, y * norm
-            s0 = s0 + c * fill(terms.re[0, k]) - d * fill(terms.im[0, k])
-            s1 = s1 + c * fill(terms.re[1, k]) - d * fill(terms.im[1, k])
-            s2 = s2 + c * fill(terms.re[2, k]) - d * fill(terms.im[2, k])
-            s3 = s3 + c * fill(terms.re[3, k]) - d * fill(terms.im[3, k])
+            s0 = s0 + c * everywhere(terms.re[0, k]) - d * everywhere(terms.im[0, k])
+            s1 = s1 + c * everywhere(terms.re[1, k]) - d * everywhere(terms.im[1, k])
+            s2 = s2 + c * everywhere(terms.re[2, k]) - d * everywhere(terms.im[2, k])
+            s3 = s3 + c * everywhere(terms.re[3, k]) - d * everywhere(terms.im[3, k])
             norm = two / (above * above + square)
             c, d = above * norm, y * norm
-            s0 = s0 - c * fill(terms.re[4, k]) - d * fill(terms.im[4, k])
-            s1 = s1 - c * fill(terms.re[5, k]) - d * fill(terms.im[5, k])
-            s2 = s2 - c * fill(terms.re[6, k]) - d * fill(terms.im[6, k])
-            s3 = s3 - c * fill(terms.re[7, k]) - d * fill(terms.im[7, k])
-        store(out[0], first, s0)
-        store(out[1], first, s1)
-        store(out[2], first, s2)
-        store(out[3], first, s3)
+            s0 = s0 - c * everywhere(terms.re[4, k]) - d * everywhere(terms.im[4, k])
+            s1 = s1 - c * everywhere(terms.re[5, k]) - d * everywhere(terms.im[5, k])
+            s2 = s2 - c * everywhere(terms.re[6, k]) - d * everywhere(terms.im[6, k])
+            s3 = s3 - c * everywhere(terms.re[7, k]) - d * everywhere(terms.im[7, k])
+        write(out[0], first, s0)
+        write(out[1], first, s1)
+        write(out[2], first, s2)
+        write(out[3], first, s3)

@@ -1,12 +1,12 @@
 """How the conductances answer to a change at the ends: of the wire's end blocks, and of the leads.
 
-With G = (M' − Σ)⁻¹ and p_ab = Tr[Γ_a G_ab Γ_b G_ab†] (`ends`), F = Σ_b c_b p_ab is any of the four
-conductances for one channel set a of incident particles. As dG = −G (dM' − dΣ) G,
+With G = (M' − Σ)⁻¹ of the end sites, m = Γ_b G_ab† Γ_a and dG = −G (dM' − dΣ) G, the probability
+p_ab = Tr[G_ab m] from one channel set to another (`ends`) changes by
 
-    dF = −2 Re Tr[Y (dM' − dΣ)] + Σ_b c_b (Tr[dΓ_a G_ab Γ_b G_ab†] + Tr[Γ_a G_ab dΓ_b G_ab†]),
+    dp = −2 Re Tr[Y (dM' − dΣ)] + Tr[dΓ_a G_ab Γ_b G_ab†] + Tr[Γ_a G_ab dΓ_b G_ab†],
 
-Y = G Wᵀ G with W = c_b Γ_a G_ab* Γ_b in the rows a. For real dM' that is Tr[S dM'], S the symmetric
-part of −2 Re Y.
+Y = G_·b m G_a·. For real dM' that is Tr[S dM'], S the symmetric part of −2 Re Y. The conductances
+at both signs of ω are sums of six such probabilities.
 """
 
 from __future__ import annotations
@@ -14,134 +14,178 @@ from __future__ import annotations
 import numba as nb
 import numpy as np
 
-from disorder_landscape.physics.hamiltonian import PAULI, ComplexArray
-from disorder_landscape.physics.parameters import FloatArray, Nanowire
+from disorder_landscape.physics.contraction import PAIRS
+from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.physics.recursion import C_AT, D_AT, E_AT
+from disorder_landscape.physics.vectors import WIDTH, everywhere, load, store, vectors
 
-_options = {"cache": True, "fastmath": {"contract", "nsz", "reassoc"}, "error_model": "numpy"}
+CHANNELS = np.array([(0, 1), (2, 3), (0, 2), (1, 3), (0, 3), (1, 2)])
+"""The two channel sets of each probability; sets are numbered as in `ends`."""
+CONDUCTANCE_WEIGHTS = np.array(
+    [
+        [[2, 0, 1, 0, 1, 0], [0, 2, 1, 0, 0, 1], [0, 0, 1, 0, 0, -1], [0, 0, 1, 0, -1, 0]],
+        [[2, 0, 0, 1, 0, 1], [0, 2, 0, 1, 1, 0], [0, 0, 0, 1, -1, 0], [0, 0, 0, 1, 0, -1]],
+    ],
+    dtype=np.float64,
+)
+"""G_LL, G_RR, G_LR, G_RL as sums of the probabilities: shape (sign of ω, 4, 6), + first."""
+LEAD_ENTRIES = 72
+"""Per lane: 4 channel sets × entries 00, 01, 11 × (re, im) of Σ, dΣ/dB and dΣ/dα."""
 
 
-@nb.njit(**_options)
-def _share(k: int, same_lead: bool, same_charge: bool) -> float:  # pragma: no cover
-    """Return c_b of conductance k for the channel set b that compares so with the incident one."""
-    if same_lead:
-        return 2.0 if k < 2 and not same_charge else 0.0
-    return 1.0 if k < 2 or same_charge else -1.0
-
-
-@nb.njit(**_options)
-def end_responses(
-    G: ComplexArray,
-    sigma: ComplexArray,
-    slopes: ComplexArray,
-    hole: int,
-    T: ComplexArray,
-    Y: ComplexArray,
-    answer: FloatArray,
+@nb.njit(cache=True, error_model="numpy")
+def end_green_functions(
+    state: FloatArray, leads: FloatArray, re: FloatArray, im: FloatArray
 ) -> None:  # pragma: no cover
-    """Write W and Y of G_LL, G_RR, G_LR, G_RL, and what the leads contribute.
+    """Write −G of the two end sites to re and im, as `ends` does, from its 36 real entries."""
+    upper = 0
+    for i in range(4):
+        for j in range(4):
+            if j >= i:
+                store(re, 8 * i + j, load(state, E_AT + upper))
+                store(re, 8 * i + j + 36, load(state, D_AT + upper))
+                upper += 1
+            store(re, 8 * i + j + 4, load(state, C_AT + 4 * i + j))
+    im[:] = 0.0
+    for c in range(4):
+        for entry in range(3):
+            at, of = 18 * c + 8 * (entry // 2) + (entry + 1) // 2, 2 * (9 * c + entry)
+            store(re, at, load(re, at) - load(leads, of))
+            store(im, at, -load(leads, of + 1))
+    row_re, row_im = vectors(8), vectors(8)
+    for k in range(8):
+        x, y = load(re, 9 * k), load(im, 9 * k)
+        norm = 1.0 / (x * x + y * y)
+        x, y = x * norm, -(y * norm)
+        for i in range(8):  # the row of the pivot, and divided by it
+            at = 8 * min(i, k) + max(i, k)
+            u, v = load(re, at), load(im, at)
+            store(row_re, i, u)
+            store(row_im, i, v)
+            store(re, at, u * x - v * y)
+            store(im, at, u * y + v * x)
+        for i in range(8):
+            if i != k:
+                at = 8 * min(i, k) + max(i, k)
+                u, v = load(re, at), load(im, at)
+                for j in range(i, 8):
+                    if j != k:
+                        r, s, to = load(row_re, j), load(row_im, j), 8 * i + j
+                        store(re, to, load(re, to) - u * r + v * s)
+                        store(im, to, load(im, to) - u * s - v * r)
+        store(re, 9 * k, -x)
+        store(im, 9 * k, -y)
+
+
+@nb.njit(cache=True, error_model="numpy")
+def end_responses(
+    re: FloatArray, im: FloatArray, leads: FloatArray, S: FloatArray, ends: FloatArray
+) -> None:  # pragma: no cover
+    """Write S of the six probabilities, and what the leads contribute.
 
     Parameters
     ----------
-    G : array, shape (8, 8)
-        Green's function of the two end sites.
-    sigma : array, shape (lead, charge, 2, 2)
-        Self-energies of the leads.
-    slopes : array, shape (2, lead, charge, 2, 2)
-        Derivatives of sigma with respect to two parameters.
-    hole : int
-        1 if holes come in (negative bias), 0 if electrons do.
-    T : array, shape (4, 2, 8)
-        The rows a of W.
-    Y : array, shape (4, 8, 8)
-    answer : array, shape (4, 2)
-        Derivatives of the four conductances with respect to the two, through the leads alone.
+    re, im : array of 64 vectors
+        −G of the two end sites, upper triangle.
+    leads : array of LEAD_ENTRIES vectors
+        [(3·which + entry)·2 + part], with `which` counting Σ, dΣ/dB, dΣ/dα of each channel set.
+    S : array of 36·6 vectors
+        On return entry (i, j) of `PAIRS` for probability k at 6·entry + k, twice S where i ≠ j.
+    ends : array of 12 vectors
+        On return the derivatives with respect to B and α through the leads alone, at 2·k.
     """
-    U, Z = np.empty((2, 8), dtype=np.complex128), np.empty((2, 8), dtype=np.complex128)
-    for k in range(4):
-        lead = 0 if k == 0 or k == 3 else 1
-        a = 2 * (2 * lead + hole)
-        by_first, by_second = 0.0, 0.0
-        for b in range(4):
-            c = _share(k, b // 2 == lead, b % 2 == hole)
-            gamma, first = sigma[b // 2, b % 2], slopes[0, b // 2, b % 2]
-            second = slopes[1, b // 2, b % 2]
-            for j in range(2 * b, 2 * b + 2):
-                for i in range(2):
-                    U[i, j], Z[i, j] = 0.0, 0.0
-                    for q in range(2):
-                        U[i, j] -= 2 * c * gamma[q, j % 2].imag * np.conj(G[a + i, 2 * b + q])
-                        Z[i, j] -= 2 * c * sigma[lead, hole, i, q].imag * np.conj(G[a + q, j])
-            for i in range(2):
-                for j in range(2):
-                    for q in range(2):
-                        weight = (Z[i, 2 * b + q] * G[a + i, 2 * b + j]).real
-                        by_first -= 2 * first[q, j].imag * weight
-                        by_second -= 2 * second[q, j].imag * weight
-        for i in range(2):
-            for q in range(2):
-                total = 0.0
-                for j in range(8):
-                    total += (G[a + i, j] * U[q, j]).real
-                by_first -= 2 * slopes[0, lead, hole, q, i].imag * total
-                by_second -= 2 * slopes[1, lead, hole, q, i].imag * total
-        for i in range(2):
-            for j in range(8):
-                Z[i, j] = 0.0
-                T[k, i, j] = 0.0
-                for q in range(2):
-                    T[k, i, j] -= 2 * sigma[lead, hole, i, q].imag * U[q, j]
+    R, J = vectors(64), vectors(64)  # G
+    for i in range(8):
         for j in range(8):
-            for p in range(8):
-                Z[0, p] += T[k, 0, j] * G[j, p]
-                Z[1, p] += T[k, 1, j] * G[j, p]
-        for p in range(8):
-            for q in range(8):
-                Y[k, p, q] = Z[0, p] * G[a, q] + Z[1, p] * G[a + 1, q]
-        for b in range(4):
-            for i in range(2):
-                for j in range(2):
-                    response = 2 * Y[k, 2 * b + i, 2 * b + j]
-                    by_first += (response * slopes[0, b // 2, b % 2, j, i]).real
-                    by_second += (response * slopes[1, b // 2, b % 2, j, i]).real
-        answer[k, 0], answer[k, 1] = by_first, by_second
+            at = 8 * min(i, j) + max(i, j)
+            store(R, 8 * i + j, -load(re, at))
+            store(J, 8 * i + j, -load(im, at))
+    gamma = vectors(48)  # Γ and its two derivatives, all four entries, of the four channel sets
+    for block in range(12):
+        for i in range(2):
+            for j in range(2):
+                store(gamma, 4 * block + 2 * i + j, -2.0 * load(leads, 6 * block + 2 * (i + j) + 1))
+    t, m, U, Y = vectors(8), vectors(8), vectors(32), vectors(128)
+    for k in range(6):
+        a, b = 2 * CHANNELS[k, 0], 2 * CHANNELS[k, 1]
+        A, B = 6 * a, 6 * b  # where Γ of the sets starts: 3·4 entries for each
+        for q in range(2):
+            for p in range(2):  # t = Γ_b G_ab†
+                g, h = load(gamma, B + 2 * q), load(gamma, B + 2 * q + 1)
+                at = 8 * (a + p) + b
+                store(t, 2 * q + p, g * load(R, at) + h * load(R, at + 1))
+                store(t, 4 + 2 * q + p, -(g * load(J, at) + h * load(J, at + 1)))
+        for q in range(2):
+            for p in range(2):
+                g, h = load(gamma, A + p), load(gamma, A + 2 + p)
+                for part in (0, 4):
+                    at = part + 2 * q
+                    store(m, at + p, load(t, at) * g + load(t, at + 1) * h)
+        for i in range(8):
+            x, y, X, Y_ = (
+                load(R, 8 * i + b),
+                load(R, 8 * i + b + 1),
+                load(J, 8 * i + b),
+                load(J, 8 * i + b + 1),
+            )
+            for p in range(2):
+                u, v, U_, V = load(m, p), load(m, 2 + p), load(m, 4 + p), load(m, 6 + p)
+                store(U, 4 * i + p, x * u + y * v - X * U_ - Y_ * V)
+                store(U, 4 * i + 2 + p, x * U_ + y * V + X * u + Y_ * v)
+        for i in range(8):
+            x, y, X, Y_ = load(U, 4 * i), load(U, 4 * i + 1), load(U, 4 * i + 2), load(U, 4 * i + 3)
+            for j in range(8):
+                at = 8 * a + j
+                u, v, U_, V = load(R, at), load(R, at + 8), load(J, at), load(J, at + 8)
+                store(Y, 8 * i + j, x * u + y * v - X * U_ - Y_ * V)
+                store(Y, 64 + 8 * i + j, x * U_ + y * V + X * u + Y_ * v)
+        for entry in range(36):
+            i, j = PAIRS[entry]
+            symmetric = load(Y, 8 * i + j) + load(Y, 8 * j + i)
+            store(S, 6 * entry + k, (-1.0 if i == j else -2.0) * symmetric)
+        for by in range(1, 3):
+            answer = everywhere(0.0)
+            for c in range(4):
+                for i in range(2):
+                    for j in range(2):
+                        at, of = 8 * (2 * c + i) + 2 * c + j, 6 * (3 * c + by) + 2 * (i + j)
+                        answer = answer + 2.0 * (
+                            load(Y, at) * load(leads, of) - load(Y, 64 + at) * load(leads, of + 1)
+                        )
+            for p in range(2):
+                for o in range(2):
+                    for q in range(2):
+                        at = 8 * (a + p) + b + q
+                        weight = load(R, at) * load(t, 2 * q + o) - load(J, at) * load(
+                            t, 4 + 2 * q + o
+                        )
+                        answer = answer + load(gamma, A + 4 * by + 2 * o + p) * weight
+                        n = 8 * (a + o) + b  # G_ab† Γ_a G_ab
+                        g = load(gamma, A + 2 * p + o)
+                        for r in range(2):
+                            weight = load(R, at) * load(R, n + r) + load(J, at) * load(J, n + r)
+                            answer = answer + load(gamma, B + 4 * by + 2 * r + q) * g * weight
+            store(ends, 2 * k + by - 1, answer)
 
 
-def lead_slopes(wire: Nanowire, B: float, omega: FloatArray, sigma: ComplexArray) -> ComplexArray:
-    """Return the derivatives of the leads' self-energies with respect to B and to the wire's α.
-
-    Σ = h g hᵀ with g = (E − H₀ − Σ)⁻¹, h the hopping towards the wire and H₀ the onsite term of the
-    lead, so dΣ − K dΣ Kᵀ = dh g hᵀ + h g dhᵀ + K dH₀ Kᵀ with K = h g: four linear equations.
-
-    Parameters
-    ----------
-    wire : Nanowire
-    B : float
-        Field in T.
-    omega : array, shape (energy,)
-        Energies in meV.
-    sigma : array, shape (energy, lead, charge, 2, 2)
-        What `leads.lead_self_energies` gives for them, in meV.
-
-    Returns
-    -------
-    array, shape (energy, 2, lead, charge, 2, 2)
-        In meV/T and 1/nm. Zero for α if the leads have their own, `lead_alpha`.
-    """
-    t, s = wire.hopping, wire.lead_spin_orbit_hopping
-    ds = 1 / (2 * wire.lattice) if wire.lead_alpha is None else 0.0
-    unit, sigma_x, i_sigma_y = np.eye(2), PAULI["x"].real, (1j * PAULI["y"]).real
-    slopes = np.empty((omega.size, 2, 2, 2, 2, 2), dtype=np.complex128)
-    for charge, sign in enumerate((1, -1)):
-        h, dh = -sign * (t * unit + s * i_sigma_y), -sign * ds * i_sigma_y
-        onsite = sign * (2 * t - wire.lead_mu) * unit + wire.lead_zeeman_per_tesla * B * sigma_x
-        right = sigma[:, 1, charge]
-        K = h @ np.linalg.inv(omega[:, None, None] * unit - onsite - right)
-        transposed = K.swapaxes(1, 2)
-        by_B = wire.lead_zeeman_per_tesla * K @ sigma_x @ transposed
-        by_alpha = dh @ transposed + K @ dh.T
-        kron = np.einsum("nij,nkl->nikjl", K, K).reshape(-1, 4, 4)
-        sources = np.stack([by_B.reshape(-1, 4), by_alpha.reshape(-1, 4)], axis=-1)
-        solved = np.linalg.solve(np.eye(4) - kron, sources).swapaxes(1, 2).reshape(-1, 2, 2, 2)
-        slopes[:, :, 1, charge] = solved
-        slopes[:, :, 0, charge] = solved[..., ::-1, ::-1]  # σx Σ σx, the mirror image
-    return slopes
+@nb.njit(cache=True)
+def pick_sign(
+    S: FloatArray, ends: FloatArray, signs: FloatArray, picked: FloatArray, picked_ends: FloatArray
+) -> None:  # pragma: no cover
+    """Add up the conductances of one sign of ω a lane; signs holds 0 or 1."""
+    weight = vectors(1)
+    picked[:], picked_ends[:] = 0.0, 0.0
+    for k in range(4):
+        for q in range(6):
+            plus, minus = CONDUCTANCE_WEIGHTS[0, k, q], CONDUCTANCE_WEIGHTS[1, k, q]
+            if plus == 0 and minus == 0:
+                continue
+            for l in range(WIDTH):
+                weight[l] = minus if signs[l] else plus
+            w = load(weight, 0)
+            for entry in range(36):
+                at = 4 * entry + k
+                store(picked, at, load(picked, at) + w * load(S, 6 * entry + q))
+            for by in range(2):
+                at = 2 * k + by
+                store(picked_ends, at, load(picked_ends, at) + w * load(ends, 2 * q + by))

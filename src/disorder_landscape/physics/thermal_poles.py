@@ -17,7 +17,7 @@ import numpy as np
 
 from disorder_landscape.physics.parameters import FloatArray
 from disorder_landscape.physics.residues import Terms
-from disorder_landscape.physics.simd import WIDTH, fill, load, store
+from disorder_landscape.physics.vectors import WIDTH, everywhere, read, write
 
 SERIES = np.array([-691 / 2730, 5 / 66, -1 / 30, 1 / 42, -1 / 30, 1 / 6])
 """Bernoulli's numbers B₁₂ … B₂, of Stirling's series."""
@@ -33,23 +33,23 @@ def trigamma(
 
     By recurrence and Stirling's series (DLMF 5.15.8).
     """
-    one, two = fill(1.0), fill(2.0)
-    u, v = load(x, 0), load(y, 0)
-    total_re, total_im = fill(0.0), fill(0.0)
+    one, two = everywhere(1.0), everywhere(2.0)
+    u, v = read(x, 0), read(y, 0)
+    total_re, total_im = everywhere(0.0), everywhere(0.0)
     for _ in range(8):
         norm = one / (u * u + v * v)
         a, b = u * norm, v * norm
         total_re, total_im = total_re + a * a - b * b, total_im - two * a * b
         u = u + one
     norm = one / (u * u + v * v)
-    a, b = u * norm, fill(0.0) - v * norm  # 1/z
+    a, b = u * norm, everywhere(0.0) - v * norm  # 1/z
     c, d = a * a - b * b, two * a * b  # 1/z²
-    p, q = fill(SERIES[0]), fill(0.0)
+    p, q = everywhere(SERIES[0]), everywhere(0.0)
     for k in range(1, SERIES.size):
-        p, q = fill(SERIES[k]) + p * c - q * d, p * d + q * c
-    p, q = fill(0.5) + a * p - b * q, a * q + b * p
-    store(re, 0, total_re + a + c * p - d * q)
-    store(im, 0, total_im + b + c * q + d * p)
+        p, q = everywhere(SERIES[k]) + p * c - q * d, p * d + q * c
+    p, q = everywhere(0.5) + a * p - b * q, a * q + b * p
+    write(re, 0, total_re + a + c * p - d * q)
+    write(im, 0, total_im + b + c * q + d * p)
 
 
 @nb.njit(cache=True, error_model="numpy")
@@ -64,16 +64,16 @@ def average_poles(
     for b in range(bias.size):
         sums[:] = 0.0
         for first in range(0, terms.zr.size, W):
-            store(x, 0, fill(0.5) - load(terms.zi, first) * fill(unit))
+            write(x, 0, everywhere(0.5) - read(terms.zi, first) * everywhere(unit))
             for hole in range(2):
                 V = -bias[b] if hole else bias[b]
-                store(y, 0, (load(terms.zr, first) - fill(V)) * fill(unit))
+                write(y, 0, (read(terms.zr, first) - everywhere(V)) * everywhere(unit))
                 trigamma(x, y, re, im)
-                kr, ki = load(im, 0) * fill(2 * unit), load(re, 0) * fill(-2 * unit)
+                kr, ki = read(im, 0) * everywhere(2 * unit), read(re, 0) * everywhere(-2 * unit)
                 for c in range(4):
                     row = 4 * hole + c
-                    rr, ri = load(terms.re[row], first), load(terms.im[row], first)
-                    store(sums[c], 0, load(sums[c], 0) + kr * rr - ki * ri)
+                    rr, ri = read(terms.re[row], first), read(terms.im[row], first)
+                    write(sums[c], 0, read(sums[c], 0) + kr * rr - ki * ri)
         for c in range(4):
             for l in range(W):
                 out[b, c] += sums[c, l]

@@ -1,0 +1,53 @@
+"""How the leads' self-energies change with the field and with α."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from disorder_landscape.physics.hamiltonian import PAULI, ComplexArray
+from disorder_landscape.physics.parameters import FloatArray, Nanowire
+
+
+def lead_slopes(
+    wire: Nanowire, B: FloatArray, omega: FloatArray, sigma: ComplexArray
+) -> ComplexArray:
+    """Return the derivatives of the leads' self-energies with respect to B and to the wire's α.
+
+    Σ = h g hᵀ with g = (E − H₀ − Σ)⁻¹, h the hopping towards the wire and H₀ the onsite term of the
+    lead, so dΣ − K dΣ Kᵀ = dh g hᵀ + h g dhᵀ + K dH₀ Kᵀ with K = h g: four linear equations.
+
+    Parameters
+    ----------
+    wire : Nanowire
+    B : array, shape (B,)
+        Fields in T.
+    omega : array, shape (energy,)
+        Energies in meV.
+    sigma : array, shape (B, energy, lead, charge, 2, 2)
+        What `leads.lead_self_energies` gives for them, in meV.
+
+    Returns
+    -------
+    array, shape (B, energy, 2, lead, charge, 2, 2)
+        In meV/T and 1/nm. Zero for α if the leads have their own, `lead_alpha`.
+    """
+    t, s = wire.hopping, wire.lead_spin_orbit_hopping
+    ds = 1 / (2 * wire.lattice) if wire.lead_alpha is None else 0.0
+    unit, sigma_x, i_sigma_y = np.eye(2), PAULI["x"].real, (1j * PAULI["y"]).real
+    zeeman = wire.lead_zeeman_per_tesla * B[:, None, None, None] * sigma_x
+    shape = B.size, omega.size
+    slopes = np.empty((*shape, 2, 2, 2, 2, 2), dtype=np.complex128)
+    for charge, sign in enumerate((1, -1)):
+        h, dh = -sign * (t * unit + s * i_sigma_y), -sign * ds * i_sigma_y
+        onsite = sign * (2 * t - wire.lead_mu) * unit + zeeman
+        right = sigma[:, :, 1, charge]
+        K = h @ np.linalg.inv(omega[:, None, None] * unit - onsite - right)
+        transposed = K.swapaxes(2, 3)
+        by_B = wire.lead_zeeman_per_tesla * K @ sigma_x @ transposed
+        by_alpha = dh @ transposed + K @ dh.T
+        kron = np.einsum("...ij,...kl->...ikjl", K, K).reshape(*shape, 4, 4)
+        sources = np.stack([by_B.reshape(*shape, 4), by_alpha.reshape(*shape, 4)], axis=-1)
+        solved = np.linalg.solve(np.eye(4) - kron, sources).swapaxes(2, 3)
+        slopes[:, :, :, 1, charge] = solved.reshape(*shape, 2, 2, 2)
+        slopes[:, :, :, 0, charge] = slopes[:, :, :, 1, charge, ::-1, ::-1]  # σx Σ σx, the mirror
+    return slopes

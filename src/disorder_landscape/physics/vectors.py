@@ -1,0 +1,221 @@
+"""WIDTH doubles as one value in a numba kernel: one number for each of the lanes.
+
+Where a loop over lanes is left to the compiler, sums over sites go through memory, as it cannot
+prove that they may stay in a register; and where places are known at run time only it makes no
+vectors at all, as they might overlap. Here vectors are values like any other. Each operation is one
+AVX-512 instruction, or two of AVX2; products and sums are contracted to multiply-adds.
+"""
+
+from __future__ import annotations
+
+import operator
+from typing import Any, ClassVar, TypeAlias
+
+import numba as nb
+import numpy as np
+from llvmlite import ir
+from numba.core import cgutils, types
+from numba.core.typing.templates import ConcreteTemplate, infer_global, signature
+from numba.extending import intrinsic, lower_builtin, models, register_model
+
+from disorder_landscape.physics.parameters import FloatArray
+
+WIDTH = 8
+"""Lanes of a vector."""
+
+
+Vector: TypeAlias = Any
+"""What numba knows as `VectorType`; outside kernels there is none."""
+
+
+class VectorType(types.Type):
+    """The numba type of WIDTH doubles."""
+
+    def __init__(self) -> None:
+        super().__init__(name="Vector")
+
+
+vector = VectorType()
+_llvm = ir.VectorType(ir.DoubleType(), WIDTH)
+
+
+@register_model(VectorType)
+class _Model(models.PrimitiveModel):  # type: ignore[misc]
+    def __init__(self, manager: Any, of: VectorType) -> None:
+        super().__init__(manager, of, _llvm)
+
+
+def _pointer(context: Any, builder: Any, kind: Any, array: Any, index: Any) -> Any:
+    data = context.make_array(kind)(context, builder, array).data
+    first = builder.mul(index, ir.Constant(index.type, WIDTH))
+    return builder.bitcast(builder.gep(data, [first]), _llvm.as_pointer())
+
+
+@intrinsic
+def load(typing: Any, array: Any, index: Any) -> Any:
+    """Return the vector that starts at array[WIDTH · index]; the array is contiguous."""
+
+    def generate(context: Any, builder: Any, of: Any, values: Any) -> Any:
+        return builder.load(_pointer(context, builder, of.args[0], *values), align=8 * WIDTH)
+
+    return vector(array, types.intp), generate
+
+
+@intrinsic
+def store(typing: Any, array: Any, index: Any, value: Any) -> Any:
+    """Write a vector to array[WIDTH · index] and what follows."""
+
+    def generate(context: Any, builder: Any, of: Any, values: Any) -> Any:
+        at = _pointer(context, builder, of.args[0], *values[:2])
+        builder.store(values[2], at, align=8 * WIDTH)
+        return context.get_dummy_value()
+
+    return types.void(array, types.intp, vector), generate
+
+
+@intrinsic
+def write(typing: Any, array: Any, first: Any, value: Any) -> Any:
+    """Write a vector to array[first] and what follows, wherever in the cache that is."""
+
+    def generate(context: Any, builder: Any, of: Any, values: Any) -> Any:
+        data = context.make_array(of.args[0])(context, builder, values[0]).data
+        at = builder.bitcast(builder.gep(data, [values[1]]), _llvm.as_pointer())
+        builder.store(values[2], at, align=8)
+        return context.get_dummy_value()
+
+    return types.void(array, types.intp, vector), generate
+
+
+@intrinsic
+def read(typing: Any, array: Any, first: Any) -> Any:
+    """Return the vector that starts at array[first], wherever in the cache that is."""
+
+    def generate(context: Any, builder: Any, of: Any, values: Any) -> Any:
+        data = context.make_array(of.args[0])(context, builder, values[0]).data
+        at = builder.bitcast(builder.gep(data, [values[1]]), _llvm.as_pointer())
+        return builder.load(at, align=8)
+
+    return vector(array, types.intp), generate
+
+
+@intrinsic
+def transposed(typing: Any, rows: Any) -> Any:
+    """Return the WIDTH vectors of which number i holds lane i of the given WIDTH vectors."""
+
+    def generate(context: Any, builder: Any, of: Any, values: Any) -> Any:
+        some, span = [builder.extract_value(values[0], i) for i in range(WIDTH)], 1
+        while span < WIDTH:  # exchange what is off the diagonal in blocks of twice the span
+            for i in range(WIDTH):
+                if i & span == 0:
+                    a, b = some[i], some[i + span]
+                    lanes = [[l if l & span == 0 else l - span + WIDTH for l in range(WIDTH)]]
+                    lanes += [[l + span if l & span == 0 else l + WIDTH for l in range(WIDTH)]]
+                    kind = ir.VectorType(ir.IntType(32), WIDTH)
+                    some[i], some[i + span] = (
+                        builder.shuffle_vector(a, b, ir.Constant(kind, of)) for of in lanes
+                    )
+            span *= 2
+        return context.make_tuple(builder, of.return_type, some)
+
+    return rows(rows), generate
+
+
+@intrinsic
+def larger(typing: Any, a: Any, b: Any) -> Any:
+    """Return the larger of |a| and b in each lane; b where a is no number."""
+
+    def generate(context: Any, builder: Any, of: Any, values: Any) -> Any:
+        size = _apply(builder, "fabs", values[:1])
+        return builder.select(builder.fcmp_ordered(">", size, values[1]), size, values[1])
+
+    return vector(vector, vector), generate
+
+
+def _apply(builder: Any, name: str, values: Any) -> Any:
+    kind = ir.FunctionType(_llvm, [_llvm])
+    full = f"llvm.{name}.v{WIDTH}f64"
+    return builder.call(cgutils.get_or_insert_function(builder.module, kind, full), values)
+
+
+@intrinsic
+def roots(typing: Any, a: Any) -> Any:
+    """Return the square roots."""
+    return vector(vector), lambda context, builder, of, values: _apply(builder, "sqrt", values)
+
+
+@intrinsic
+def sizes(typing: Any, a: Any) -> Any:
+    """Return the absolute values."""
+    return vector(vector), lambda context, builder, of, values: _apply(builder, "fabs", values)
+
+
+@intrinsic
+def where_greater(typing: Any, a: Any, b: Any, x: Any, y: Any) -> Any:
+    """Return x where a > b, elsewhere y."""
+
+    def generate(context: Any, builder: Any, of: Any, values: Any) -> Any:
+        return builder.select(builder.fcmp_ordered(">", *values[:2]), *values[2:])
+
+    return vector(vector, vector, vector, vector), generate
+
+
+def _same(builder: Any, value: Any) -> Any:
+    if value.type == _llvm:
+        return value
+    first = builder.insert_element(_llvm(ir.Undefined), value, ir.Constant(ir.IntType(32), 0))
+    everywhere = ir.Constant(ir.VectorType(ir.IntType(32), WIDTH), [0] * WIDTH)
+    return builder.shuffle_vector(first, _llvm(ir.Undefined), everywhere)
+
+
+@intrinsic
+def everywhere(typing: Any, value: Any) -> Any:
+    """Return the vector with a number in each lane."""
+
+    def generate(context: Any, builder: Any, of: Any, values: Any) -> Any:
+        return _same(builder, values[0])
+
+    return vector(types.float64), generate
+
+
+def _define(operation: Any, name: str) -> None:
+    """Let numba know an operation between vectors, or a vector and a number."""
+    operands = [(vector, vector), (vector, types.float64), (types.float64, vector)]
+
+    class Template(ConcreteTemplate):  # type: ignore[misc]
+        cases: ClassVar = [signature(vector, *of) for of in operands]
+
+    infer_global(operation)(Template)
+
+    def generate(context: Any, builder: Any, of: Any, values: Any) -> Any:
+        a, b = (_same(builder, value) for value in values)
+        return getattr(builder, name)(a, b, flags=("contract", "nsz"))
+
+    for of in operands:
+        lower_builtin(operation, *of)(generate)
+
+
+for _operation, _name in (
+    (operator.add, "fadd"),
+    (operator.sub, "fsub"),
+    (operator.mul, "fmul"),
+    (operator.truediv, "fdiv"),
+):
+    _define(_operation, _name)
+
+
+@infer_global(operator.neg)
+class _Negation(ConcreteTemplate):  # type: ignore[misc]
+    cases: ClassVar = [signature(vector, vector)]
+
+
+@lower_builtin(operator.neg, vector)
+def _negate(context: Any, builder: Any, of: Any, values: Any) -> Any:
+    return builder.fneg(values[0])
+
+
+@nb.njit(cache=True)
+def vectors(count: int) -> FloatArray:  # pragma: no cover
+    """Return room for so many vectors, each within one line of the cache."""
+    room = np.empty((count + 1) * WIDTH)
+    first = -(room.ctypes.data // room.itemsize) % WIDTH
+    return room[first : first + count * WIDTH]
