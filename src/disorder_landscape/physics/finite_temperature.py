@@ -262,6 +262,11 @@ def _kernel(
         _calculate(p, plan, growth_limit, some, out, error)
 
 
+def _where(wanted: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Return the indices of the sets that are wanted, shape (set, 3), always in one layout."""
+    return np.ascontiguousarray(np.argwhere(wanted))
+
+
 def thermal_conductance(
     wires: Sequence[Nanowire],
     mu: FloatArray,
@@ -285,7 +290,7 @@ def thermal_conductance(
     shape = (len(wires), B.size, mu.size)
     G, error = np.zeros((*shape, bias.size, 4)), np.full(shape, np.inf)
     energies = np.zeros(shape, dtype=np.int64)
-    sets = np.argwhere(np.ones(shape, dtype=bool))
+    sets = _where(np.ones(shape, dtype=bool))
     earlier: list[FloatArray] = []
     for nodes in NODES:
         plan = energy_plan(wires, bias, kT, nodes)
@@ -299,7 +304,7 @@ def thermal_conductance(
         estimate += FLOOR
         better = estimate < error
         G[better], error[better] = found[better], estimate[better]
-        sets = np.argwhere(error > tolerance)
+        sets = _where(error > tolerance)
         if sets.size == 0:
             break
         earlier.append(found)
