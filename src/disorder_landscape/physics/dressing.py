@@ -23,7 +23,7 @@ import numpy as np
 from disorder_landscape.physics.hamiltonian import ComplexArray
 from disorder_landscape.physics.levels import invert
 from disorder_landscape.physics.parameters import FloatArray
-from disorder_landscape.physics.vectors import WIDTH, everywhere, read, write
+from disorder_landscape.physics.vectors import WIDTH, Vector, everywhere, read, write
 
 CUBIC = 4
 """Nodes, and coefficients, of the cubic for Σ(ω)."""
@@ -33,9 +33,7 @@ ENDS = np.array([[0, 1, 4, 5], [2, 3, 6, 7]])
 """Which entries of the chiral basis lie on which end."""
 
 
-@nb.njit(cache=True, inline="always")
-def place(i: int, j: int) -> int:  # pragma: no cover
-    """Return where entry (i, j) stands: C = ++ (10), −− (10), then +− (16)."""
+def _place(i: int, j: int) -> int:
     a, b = min(i, j), max(i, j)
     if b < 4:
         return 4 * a - a * (a - 1) // 2 + b - a
@@ -45,7 +43,8 @@ def place(i: int, j: int) -> int:  # pragma: no cover
     return 20 + 4 * a + b - 4
 
 
-PLACES = np.array([[place.py_func(i, j) for j in range(8)] for i in range(8)])
+PLACES = np.array([[_place(i, j) for j in range(8)] for i in range(8)])
+"""Where entry (i, j) of a symmetric matrix stands: C = ++ (10), −− (10), then +− (16)."""
 
 
 class Levels(NamedTuple):
@@ -53,7 +52,7 @@ class Levels(NamedTuple):
 
     E: FloatArray  # (level,)
     weight: FloatArray  # (level, 8), what the ends see of ±E: with C = +1, over √2, and C = −1
-    products: FloatArray  # (level, UPPER): entries of w wᵀ, by `place`
+    products: FloatArray  # (level, UPPER): entries of w wᵀ, by `PLACES`
 
 
 @nb.njit(cache=True)
@@ -265,6 +264,19 @@ def solve(
 
 
 @nb.njit(cache=True, error_model="numpy")
+def add_product(
+    pivots: FloatArray, f: FloatArray, g: FloatArray, re: Vector, im: Vector
+) -> tuple[Vector, Vector]:  # pragma: no cover
+    """Return re + i·im + xᵀM⁻¹y, given f = L⁻¹x and g = L⁻¹y, each (2, 8 · WIDTH)."""
+    for at in range(0, f.shape[1], WIDTH):
+        ar, ai, br, bi = read(f[0], at), read(f[1], at), read(g[0], at), read(g[1], at)
+        dr, di = read(pivots[0], at), read(pivots[1], at)
+        qr, qi = ar * br - ai * bi, ar * bi + ai * br
+        re, im = re + qr * dr - qi * di, im + qr * di + qi * dr
+    return re, im
+
+
+@nb.njit(cache=True, error_model="numpy")
 def of_ends(
     s_re: FloatArray,
     s_im: FloatArray,
@@ -279,8 +291,7 @@ def of_ends(
         for i in range(4):
             a, b = everywhere(0.0), everywhere(0.0)
             for j in range(4):
-                low, high = min(i, j), max(i, j)
-                at = (10 * end + 4 * low - low * (low - 1) // 2 + high - low) * W
+                at = (10 * end + PLACES[i, j]) * W
                 to = ENDS[end, j] * W
                 sr, si, c, d = read(s_re, at), read(s_im, at), read(xr, to), read(xi, to)
                 a, b = a + sr * c - si * d, b + sr * d + si * c

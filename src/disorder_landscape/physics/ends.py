@@ -18,6 +18,16 @@ from disorder_landscape.physics.parameters import FloatArray
 from disorder_landscape.physics.recursion import C_AT, D_AT, E_AT, LANES
 
 LEFT_ELECTRON, LEFT_HOLE, RIGHT_ELECTRON, RIGHT_HOLE = 0, 1, 2, 3
+CHANNELS = np.array([(0, 1), (2, 3), (0, 2), (1, 3), (0, 3), (1, 2)])
+"""The two channel sets of each probability: Andreev at L, at R, then ee, hh, eh, he."""
+CONDUCTANCE_WEIGHTS = np.array(
+    [
+        [[2, 0, 1, 0, 1, 0], [0, 2, 1, 0, 0, 1], [0, 0, 1, 0, 0, -1], [0, 0, 1, 0, -1, 0]],
+        [[2, 0, 0, 1, 0, 1], [0, 2, 0, 1, 1, 0], [0, 0, 0, 1, -1, 0], [0, 0, 0, 1, 0, -1]],
+    ],
+    dtype=np.float64,
+)
+"""G_LL, G_RR, G_LR, G_RL as sums of the probabilities: shape (sign of ω, 4, 6), + first."""
 
 
 @nb.njit(cache=True, error_model="numpy")

@@ -49,7 +49,7 @@ def energy_plan(wires: Sequence[Nanowire], bias: FloatArray, kT: float, nodes: i
     signed = np.concatenate([at_nodes, -at_nodes, checks, -checks])
     picks = ((np.arange(CUBIC) + 0.5) * nodes / CUBIC).astype(np.int64)
     slopes = np.empty((len(wires), 2, omega.size))
-    hop = np.array([np.hypot(w.hopping, w.spin_orbit_hopping) for w in wires])
+    hop = np.array([w.rotated_hopping for w in wires])
     for wire, slope, t in zip(wires, slopes, hop, strict=True):
         root = np.sqrt(wire.delta0**2 - omega**2)
         slope[0] = (1 + wire.gamma / root + wire.gamma * omega**2 / root**3) / t

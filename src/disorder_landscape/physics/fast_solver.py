@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 import numba as nb
 import numpy as np
+from numpy.typing import NDArray
 
 from disorder_landscape.physics.compilation import compile_kernels
 from disorder_landscape.physics.ends import end_green_functions, lane_conductances
@@ -57,7 +58,7 @@ def prepare(
 ) -> Problem:
     """Return the terms of all wires, with Σ(ω) of the parent superconductor from `factors`."""
     sites = wires[0].sites
-    hop = np.array([np.hypot(w.hopping, w.spin_orbit_hopping) for w in wires])
+    hop = np.array([w.rotated_hopping for w in wires])
     angle = np.array([np.arctan2(w.spin_orbit_hopping, w.hopping) for w in wires])
     zeeman = np.outer([w.zeeman_per_tesla for w in wires] / hop, B)[:, :, None]
     phases = 2 * angle[:, None, None] * np.arange(sites)
@@ -78,6 +79,17 @@ def prepare(
 
 
 @nb.njit(cache=True)
+def load_lanes(
+    p: Problem, w: int, mu: NDArray[np.int64], energy: NDArray[np.int64], s: FloatArray
+) -> None:  # pragma: no cover
+    """Write the terms of wire w for the lanes' pairs (μ, ω), given by their indices."""
+    for l in range(LANES):
+        s[KINETIC * LANES + l] = p.kinetic[w, mu[l]]
+        s[NORMAL * LANES + l] = p.normal[w, energy[l]]
+        s[ANOMALOUS * LANES + l] = p.anomalous[w, energy[l]]
+
+
+@nb.njit(cache=True)
 def _solve_lanes(
     p: Problem,
     w: int,
@@ -95,9 +107,7 @@ def _solve_lanes(
     for l in range(LANES):
         pair = min(first + l, pairs - 1)
         mu[l], energy[l] = pair // energies, pair % energies
-        s[KINETIC * LANES + l] = p.kinetic[w, mu[l]]
-        s[NORMAL * LANES + l] = p.normal[w, energy[l]]
-        s[ANOMALOUS * LANES + l] = p.anomalous[w, energy[l]]
+    load_lanes(p, w, mu, energy, s)
     V, zeeman_x, zeeman_z, sigma = p.V[w], p.zeeman_x[w, f], p.zeeman_z[w, f], p.sigma[w, f]
     eliminate_inner_sites(s, V, zeeman_x, zeeman_z)
     end_green_functions(s, sigma, energy, re, im)

@@ -24,18 +24,15 @@ from disorder_landscape.physics.compilation import compile_kernels
 from disorder_landscape.physics.dressing import CUBIC, Leads, leads_between
 from disorder_landscape.physics.ends import end_green_functions, lane_conductances
 from disorder_landscape.physics.energy_plan import CHECKS, EnergyPlan, energy_plan
-from disorder_landscape.physics.fast_solver import GROWTH_LIMIT, Problem, prepare
+from disorder_landscape.physics.fast_solver import GROWTH_LIMIT, Problem, load_lanes, prepare
 from disorder_landscape.physics.hamiltonian import ComplexArray
 from disorder_landscape.physics.levels import isolated_end_green_function, to_chiral, wire_levels
 from disorder_landscape.physics.parameters import BOLTZMANN, FloatArray, Nanowire
 from disorder_landscape.physics.rational_average import rational_average
 from disorder_landscape.physics.recursion import (
-    ANOMALOUS,
     ANOMALOUS_SLOPE,
     GROWTH,
-    KINETIC,
     LANES,
-    NORMAL,
     NORMAL_SLOPE,
     STATE_WITH_SLOPES,
     eliminate_inner_sites,
@@ -85,18 +82,10 @@ def _chiral_self_energy(
 
 
 @nb.njit(cache=True)
-def _load_lanes(
-    p: Problem,
-    plan: EnergyPlan,
-    s: FloatArray,
-    w: int,
-    mu: NDArray[np.int64],
-    energy: NDArray[np.int64],
+def _load_slopes(
+    plan: EnergyPlan, w: int, energy: NDArray[np.int64], s: FloatArray
 ) -> None:  # pragma: no cover
     for l in range(LANES):
-        s[KINETIC * LANES + l] = p.kinetic[w, mu[l]]
-        s[NORMAL * LANES + l] = p.normal[w, energy[l]]
-        s[ANOMALOUS * LANES + l] = p.anomalous[w, energy[l]]
         s[NORMAL_SLOPE * LANES + l] = plan.slopes[w, 0, energy[l]]
         s[ANOMALOUS_SLOPE * LANES + l] = plan.slopes[w, 1, energy[l]]
 
@@ -130,10 +119,11 @@ def _solve(
             for l in range(LANES):
                 pair = min(piece + l, total - 1)
                 at_mu[l], energy[l] = mu[pair // each], pair % each + checking * plan.nodes
-            _load_lanes(p, plan, s, w, at_mu, energy)
+            load_lanes(p, w, at_mu, energy, s)
             if checking:
                 eliminate_inner_sites(s, V, zeeman_x, zeeman_z)
             else:
+                _load_slopes(plan, w, energy, s)
                 eliminate_inner_sites_with_slopes(s, V, zeeman_x, zeeman_z)
             end_green_functions(s, sigma, energy, re, im)
             for l in range(min(LANES, total - piece)):

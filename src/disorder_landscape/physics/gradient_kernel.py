@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from disorder_landscape.physics.columns import RECORD, Problem, sweep
 from disorder_landscape.physics.contraction import SUMS
 from disorder_landscape.physics.derivatives import collect, contract
+from disorder_landscape.physics.ends import CONDUCTANCE_WEIGHTS
 from disorder_landscape.physics.parameters import FloatArray
 from disorder_landscape.physics.responses import (
-    CONDUCTANCE_WEIGHTS,
     LEAD_ENTRIES,
     end_green_functions,
     end_responses,

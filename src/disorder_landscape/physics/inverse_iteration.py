@@ -80,6 +80,15 @@ def new_batch(levels: int) -> Batch:  # pragma: no cover
 
 
 @nb.njit(cache=True, error_model="numpy")
+def factor_at_energies(levels: Levels, inverse: ComplexArray, b: Batch) -> None:  # pragma: no cover
+    """Factor M = S − G_iso at the energies z; S is the cubic `inverse` of `Leads`."""
+    reciprocals(b.zr, b.zi, levels.E, b.parts)
+    isolated_sums(levels, b.parts, b.re, b.im)
+    cubics(inverse, b.zr, b.zi, b.s)
+    factor(b.s, b.re, b.im, b.pivots)
+
+
+@nb.njit(cache=True, error_model="numpy")
 def _apply_resolvent(levels: Levels, b: Batch) -> None:  # pragma: no cover
     """Replace x by R x, keep x in parts that are no longer needed; write U R x to t."""
     W, zero = WIDTH, everywhere(0.0)
@@ -201,10 +210,7 @@ def _add_slope(b: Batch) -> None:  # pragma: no cover
 def _step(levels: Levels, leads: Leads, b: Batch, overlap: FloatArray) -> None:  # pragma: no cover
     """Improve the poles and their vectors."""
     W = WIDTH
-    reciprocals(b.zr, b.zi, levels.E, b.parts)
-    isolated_sums(levels, b.parts, b.re, b.im)
-    cubics(leads.inverse, b.zr, b.zi, b.s)
-    factor(b.s, b.re, b.im, b.pivots)
+    factor_at_energies(levels, leads.inverse, b)
     _apply_resolvent(levels, b)
     solve(b.re, b.im, b.pivots, b.t[0], b.t[1])
     _add_mixed(levels, b, overlap)

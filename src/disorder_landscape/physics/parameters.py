@@ -109,6 +109,11 @@ class Nanowire:
         return self.alpha / (2 * self.lattice)
 
     @property
+    def rotated_hopping(self) -> float:
+        """T' = √(t² + (α/2a)²) in meV, the hopping where the spin turns along (`recursion`)."""
+        return float(np.hypot(self.hopping, self.spin_orbit_hopping))
+
+    @property
     def lead_spin_orbit_hopping(self) -> float:
         """α/2a of the leads in meV."""
         alpha = self.alpha if self.lead_alpha is None else self.lead_alpha

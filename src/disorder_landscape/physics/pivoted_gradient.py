@@ -11,8 +11,8 @@ from scipy.linalg import solve_banded
 
 from disorder_landscape.physics import hamiltonian as h
 from disorder_landscape.physics.columns import Problem
+from disorder_landscape.physics.ends import CHANNELS, CONDUCTANCE_WEIGHTS
 from disorder_landscape.physics.parameters import FloatArray
-from disorder_landscape.physics.responses import CHANNELS, CONDUCTANCE_WEIGHTS
 
 BANDWIDTH = 4
 """Sub- and superdiagonals of M."""

@@ -12,17 +12,14 @@ import numpy as np
 from disorder_landscape.physics.dressing import (
     Leads,
     Levels,
-    cubics,
-    factor,
-    isolated_sums,
+    add_product,
     level_products,
     of_ends,
-    reciprocals,
     solve_lower,
 )
 from disorder_landscape.physics.energy_plan import CHECKS, EnergyPlan
 from disorder_landscape.physics.hamiltonian import ComplexArray
-from disorder_landscape.physics.inverse_iteration import Batch, new_batch
+from disorder_landscape.physics.inverse_iteration import Batch, factor_at_energies, new_batch
 from disorder_landscape.physics.parameters import FloatArray
 from disorder_landscape.physics.pole_starts import start_poles
 from disorder_landscape.physics.residues import Terms, conductance_terms, sum_poles
@@ -146,10 +143,7 @@ def _mismatch(
     W = WIDTH
     for l in range(W):
         b.zr[l], b.zi[l] = plan.omega[plan.nodes + min(l, CHECKS - 1)], 0.0
-    reciprocals(b.zr, b.zi, levels.E, b.parts)
-    isolated_sums(levels, b.parts, b.re, b.im)
-    cubics(leads.inverse, b.zr, b.zi, b.s)
-    factor(b.s, b.re, b.im, b.pivots)
+    factor_at_energies(levels, leads.inverse, b)
     unit, f = np.zeros((2, 8 * W)), np.empty((8, 2, 8 * W))
     for j in range(8):
         unit[0, j * W : (j + 1) * W] = 1.0
@@ -166,16 +160,7 @@ def _mismatch(
                 everywhere(0.0) - read(same_end[j, 0], at),
                 everywhere(0.0) - read(same_end[j, 1], at),
             )
-            for at in range(0, 8 * W, W):
-                ar, ai, br, bi = (
-                    read(f[i, 0], at),
-                    read(f[i, 1], at),
-                    read(f[j, 0], at),
-                    read(f[j, 1], at),
-                )
-                dr, di = read(b.pivots[0], at), read(b.pivots[1], at)
-                qr, qi = ar * br - ai * bi, ar * bi + ai * br
-                re, im = re + qr * dr - qi * di, im + qr * di + qi * dr
+            re, im = add_product(b.pivots, f[i], f[j], re, im)
             write(here[0], 0, re)
             write(here[1], 0, im)
             for k in range(CHECKS):

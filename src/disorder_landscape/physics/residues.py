@@ -21,19 +21,15 @@ from disorder_landscape.physics.dressing import (
     ENDS,
     Leads,
     Levels,
+    add_product,
     cubics,
-    factor,
-    isolated_sums,
     of_ends,
-    reciprocals,
     solve_lower,
 )
-from disorder_landscape.physics.inverse_iteration import Batch, Poles
+from disorder_landscape.physics.ends import CHANNELS, CONDUCTANCE_WEIGHTS
+from disorder_landscape.physics.inverse_iteration import Batch, Poles, factor_at_energies
 from disorder_landscape.physics.parameters import FloatArray
 from disorder_landscape.physics.vectors import WIDTH, everywhere, read, write
-
-PAIRS = np.array([[0, 1], [2, 3], [0, 2], [1, 3], [0, 3], [1, 2]])
-"""Pairs of channel sets Le, Lh, Re, Rh: Andreev at L, at R, then ee, hh, eh, he."""
 
 
 class Terms(NamedTuple):
@@ -87,13 +83,10 @@ def _split_channels(y: FloatArray, c: FloatArray) -> None:  # pragma: no cover
 def _amplitudes(
     levels: Levels, leads: Leads, b: Batch, c: FloatArray, p: FloatArray
 ) -> None:  # pragma: no cover
-    """Write cᵀ_a [G(z*)]* c_b of the six PAIRS: (12, WIDTH), real parts, then imaginary parts."""
+    """Write cᵀ_a [G(z*)]* c_b of the six CHANNELS: (12, WIDTH), re, then im."""
     W = WIDTH
     f, start = np.empty((4, 2, 8 * W)), np.zeros((12, W))
-    cubics(leads.conjugate, b.zr, b.zi, b.s)
-    reciprocals(b.zr, b.zi, levels.E, b.parts)
-    isolated_sums(levels, b.parts, b.re, b.im)
-    factor(b.s, b.re, b.im, b.pivots)
+    factor_at_energies(levels, leads.conjugate, b)
     for channel in range(4):
         g = f[channel]
         of_ends(b.s[0], b.s[1], c[channel, 0], c[channel, 1], g[0], g[1])
@@ -109,13 +102,8 @@ def _amplitudes(
     for channel in range(4):
         solve_lower(b.re, b.im, f[channel, 0], f[channel, 1])
     for pair in range(6):
-        g, h = f[PAIRS[pair, 0]], f[PAIRS[pair, 1]]
-        re, im = read(start[pair], 0), read(start[6 + pair], 0)
-        for at in range(0, 8 * W, W):
-            ar, ai, br, bi = read(g[0], at), read(g[1], at), read(h[0], at), read(h[1], at)
-            dr, di = read(b.pivots[0], at), read(b.pivots[1], at)
-            qr, qi = ar * br - ai * bi, ar * bi + ai * br
-            re, im = re + qr * dr - qi * di, im + qr * di + qi * dr
+        x, y = f[CHANNELS[pair, 0]], f[CHANNELS[pair, 1]]
+        re, im = add_product(b.pivots, x, y, read(start[pair], 0), read(start[6 + pair], 0))
         write(p[pair], 0, re)
         write(p[6 + pair], 0, im)
 
@@ -134,7 +122,7 @@ def conductance_terms(
     count = order.size
     full = (count + W - 1) // W * W
     out = Terms(np.zeros(full), np.full(full, -1.0), np.zeros((8, full)), np.zeros((8, full)))
-    y, c, p = np.empty((2, 8 * W)), np.empty((4, 2, 8 * W)), np.empty((12, W))
+    y, parts, p = np.empty((2, 8 * W)), np.empty((4, 2, 8 * W)), np.empty((12, W))
     for first in range(0, count, W):
         for l in range(W):
             k = order[min(first + l, count - 1)]
@@ -143,19 +131,18 @@ def conductance_terms(
             for i in range(8):
                 b.t[0, i * W + l], b.t[1, i * W + l] = poles.t[k, i].real, poles.t[k, i].imag
         _widths_seen(leads, b, y)
-        _split_channels(y, c)
-        _amplitudes(levels, leads, b, c, p)
+        _split_channels(y, parts)
+        _amplitudes(levels, leads, b, parts, p)
         for part in range(2):
             to = out.re if part == 0 else out.im
-            q = p[6 * part :]
             for l in range(min(W, count - first)):
-                al, ar, ee, hh, eh, he = q[0, l], q[1, l], q[2, l], q[3, l], q[4, l], q[5, l]
                 k = first + l
-                to[0, k], to[1, k] = 2 * al + ee + eh, 2 * ar + ee + he
-                to[2, k], to[3, k] = ee - he, ee - eh
-                if k < paired:
-                    to[4, k], to[5, k] = 2 * al + hh + he, 2 * ar + hh + eh
-                    to[6, k], to[7, k] = hh - eh, hh - he
+                for hole in range(2 if k < paired else 1):
+                    for c in range(4):
+                        total = 0.0
+                        for pair in range(6):
+                            total += CONDUCTANCE_WEIGHTS[hole, c, pair] * p[6 * part + pair, l]
+                        to[4 * hole + c, k] = total
         for l in range(min(W, count - first)):
             out.zr[first + l], out.zi[first + l] = b.zr[l], b.zi[l]
     return out

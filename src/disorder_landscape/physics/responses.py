@@ -12,23 +12,13 @@ at both signs of ω are sums of six such probabilities.
 from __future__ import annotations
 
 import numba as nb
-import numpy as np
 
 from disorder_landscape.physics.contraction import PAIRS
+from disorder_landscape.physics.ends import CHANNELS, CONDUCTANCE_WEIGHTS
 from disorder_landscape.physics.parameters import FloatArray
 from disorder_landscape.physics.recursion import C_AT, D_AT, E_AT
 from disorder_landscape.physics.vectors import WIDTH, everywhere, load, store, vectors
 
-CHANNELS = np.array([(0, 1), (2, 3), (0, 2), (1, 3), (0, 3), (1, 2)])
-"""The two channel sets of each probability; sets are numbered as in `ends`."""
-CONDUCTANCE_WEIGHTS = np.array(
-    [
-        [[2, 0, 1, 0, 1, 0], [0, 2, 1, 0, 0, 1], [0, 0, 1, 0, 0, -1], [0, 0, 1, 0, -1, 0]],
-        [[2, 0, 0, 1, 0, 1], [0, 2, 0, 1, 1, 0], [0, 0, 0, 1, -1, 0], [0, 0, 0, 1, 0, -1]],
-    ],
-    dtype=np.float64,
-)
-"""G_LL, G_RR, G_LR, G_RL as sums of the probabilities: shape (sign of ω, 4, 6), + first."""
 LEAD_ENTRIES = 72
 """Per lane: 4 channel sets × entries 00, 01, 11 × (re, im) of Σ, dΣ/dB and dΣ/dα."""
 

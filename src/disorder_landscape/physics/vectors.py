@@ -45,10 +45,14 @@ class _Model(models.PrimitiveModel):  # type: ignore[misc]
         super().__init__(manager, of, _llvm)
 
 
-def _pointer(context: Any, builder: Any, kind: Any, array: Any, index: Any) -> Any:
+def _place(context: Any, builder: Any, kind: Any, array: Any, first: Any) -> Any:
     data = context.make_array(kind)(context, builder, array).data
-    first = builder.mul(index, ir.Constant(index.type, WIDTH))
     return builder.bitcast(builder.gep(data, [first]), _llvm.as_pointer())
+
+
+def _pointer(context: Any, builder: Any, kind: Any, array: Any, index: Any) -> Any:
+    first = builder.mul(index, ir.Constant(index.type, WIDTH))
+    return _place(context, builder, kind, array, first)
 
 
 @intrinsic
@@ -78,9 +82,7 @@ def write(typing: Any, array: Any, first: Any, value: Any) -> Any:
     """Write a vector to array[first] and what follows, wherever in the cache that is."""
 
     def generate(context: Any, builder: Any, of: Any, values: Any) -> Any:
-        data = context.make_array(of.args[0])(context, builder, values[0]).data
-        at = builder.bitcast(builder.gep(data, [values[1]]), _llvm.as_pointer())
-        builder.store(values[2], at, align=8)
+        builder.store(values[2], _place(context, builder, of.args[0], *values[:2]), align=8)
         return context.get_dummy_value()
 
     return types.void(array, types.intp, vector), generate
@@ -91,9 +93,7 @@ def read(typing: Any, array: Any, first: Any) -> Any:
     """Return the vector that starts at array[first], wherever in the cache that is."""
 
     def generate(context: Any, builder: Any, of: Any, values: Any) -> Any:
-        data = context.make_array(of.args[0])(context, builder, values[0]).data
-        at = builder.bitcast(builder.gep(data, [values[1]]), _llvm.as_pointer())
-        return builder.load(at, align=8)
+        return builder.load(_place(context, builder, of.args[0], *values), align=8)
 
     return vector(array, types.intp), generate
 
@@ -118,17 +118,6 @@ def transposed(typing: Any, rows: Any) -> Any:
         return context.make_tuple(builder, of.return_type, some)
 
     return rows(rows), generate
-
-
-@intrinsic
-def larger(typing: Any, a: Any, b: Any) -> Any:
-    """Return the larger of |a| and b in each lane; b where a is no number."""
-
-    def generate(context: Any, builder: Any, of: Any, values: Any) -> Any:
-        size = _apply(builder, "fabs", values[:1])
-        return builder.select(builder.fcmp_ordered(">", size, values[1]), size, values[1])
-
-    return vector(vector, vector), generate
 
 
 def _apply(builder: Any, name: str, values: Any) -> Any:
@@ -211,6 +200,13 @@ class _Negation(ConcreteTemplate):  # type: ignore[misc]
 @lower_builtin(operator.neg, vector)
 def _negate(context: Any, builder: Any, of: Any, values: Any) -> Any:
     return builder.fneg(values[0])
+
+
+@nb.njit(cache=True)
+def larger(a: Vector, b: Vector) -> Vector:  # pragma: no cover
+    """Return the larger of |a| and b in each lane; b where a is no number."""
+    size = sizes(a)
+    return where_greater(size, b, size, b)
 
 
 @nb.njit(cache=True)
