@@ -1,0 +1,180 @@
+"""A claim of the paper, as claims/claims.toml states it, and the rule that judges a value by it."""
+
+from __future__ import annotations
+
+import tomllib
+from functools import cache
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from disorder_landscape.arguments import ArgumentError
+from disorder_landscape.chain import REPOSITORY
+
+CLAIMS_FILE = REPOSITORY / "claims" / "claims.toml"
+
+Sense = Literal["at least", "at most", "within", "exactly"]
+Verdict = Literal["reproduced", "differs", "not tested"]
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    scale: str
+    """At which size, on what, or in which reading of the paper our value was measured."""
+
+
+class Stored(_Table):
+    """Our value in a file of results: JSON with a key, or CSV with a column and some rows."""
+
+    file: str
+    """From the root of the repository; where it is missing, the study has not run yet."""
+    key: str | None = None
+    """JSON: names of the nested objects and of the value, joined with slashes."""
+    where: dict[str, str | float] = {}
+    """CSV: what columns must hold in the rows that count; no condition takes all rows."""
+    column: str | None = None
+    """CSV: the column of the value."""
+    reduce: Literal["only", "mean", "median", "min", "max", "sum"] = "only"
+    """CSV: what becomes of several rows; "only" allows one."""
+    times: float = 1.0
+    """A factor, such as 2 where an error is compared as two standard deviations."""
+
+    @model_validator(mode="after")
+    def _json_or_csv(self) -> Stored:
+        if (self.key is None) == (self.column is None):
+            raise ValueError("a file needs either a key (JSON) or a column (CSV)")
+        return self
+
+
+class Measured(_Table):
+    """Our value from a quick measurement, which is stored in claims/measured.json."""
+
+    measure: str
+    """Name of a function of `claims.measurements`."""
+    arguments: dict[str, str | float] = {}
+    spread: Annotated[float, Field(ge=0)] = 0.0
+    """How far two runs may lie apart, also on different processors."""
+    needs: str | None = None
+    """A file or folder without which it cannot be measured: a study that has not run yet."""
+
+
+class Claim(BaseModel):
+    """One number, or one sentence that can be checked, of the paper."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    id: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9.-]*$")]
+    statement: str
+    """In our words."""
+    where: str
+    """Section or figure of the paper."""
+    paper: int | float | None = None
+    """The paper's number; or, where it has words only, the number that we ask for instead."""
+    words: str | None = None
+    """What the paper says where it gives no number."""
+    unit: str = ""
+    sense: Sense = "within"
+    """How `paper` and `tolerance` bound our value."""
+    tolerance: Annotated[float, Field(ge=0)] = 0.0
+    ours: tuple[Stored | Measured, ...] = ()
+    """Where our values come from. The first of these that is there decides."""
+    reason: str = ""
+    """Why it differs, where it does; or why it is not tested, where there is nothing to test."""
+    remark: str = ""
+    """What should be known of the verdict, whichever it is."""
+    command: str | None = None
+    """Measures it again; left out where `make claims ONLY=…` does."""
+    minutes: Annotated[float, Field(ge=0)] | None = None
+    """What the command takes, on two cores unless the remark says otherwise."""
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Claim:
+        if not self.ours:
+            if not self.reason:
+                raise ValueError(f"'{self.id}' is not tested, so it must give the reason")
+            return self
+        if self.paper is None or (self.sense == "exactly" and self.tolerance):
+            raise ValueError(f"'{self.id}' needs a number to compare with, and its tolerance")
+        if len([source for source in self.ours if isinstance(source, Measured)]) > 1:
+            raise ValueError(f"'{self.id}' must have one quick measurement at most")
+        if self.measured is None and (self.command is None or self.minutes is None):
+            raise ValueError(f"'{self.id}' needs the command of its study, and its minutes")
+        return self
+
+    @property
+    def measured(self) -> Measured | None:
+        """The quick measurement, if it has one."""
+        return next((source for source in self.ours if isinstance(source, Measured)), None)
+
+    def judge(self, value: float) -> Verdict:
+        """Return whether a value of ours reproduces the paper's, within the tolerance.
+
+        A relative 1e-12 is allowed for, since 0.95 − 0.005 is no decimal number to a computer.
+        """
+        if self.paper is None:
+            return "not tested"
+        paper, rounding = self.paper, 1e-12 * max(abs(self.paper), abs(value))
+        low, high = paper - self.tolerance - rounding, paper + self.tolerance + rounding
+        holds = {
+            "at least": value >= low,
+            "at most": value <= high,
+            "within": low <= value <= high,
+            "exactly": value == paper,
+        }[self.sense]
+        return "reproduced" if holds else "differs"
+
+
+@cache
+def load_claims(path: Path = CLAIMS_FILE) -> tuple[Claim, ...]:
+    """Read and check the claims.
+
+    Raises
+    ------
+    ArgumentError
+        If the file is missing or no TOML, a claim is not as `Claim` says, or two share an id.
+    """
+    try:
+        content = tomllib.loads(path.read_text("utf-8"))
+        claims = tuple(Claim.model_validate(table) for table in content.get("claim", []))
+    except OSError as error:
+        but = f"'{path}' cannot be read ({error.strerror})"
+        raise ArgumentError("claims", "be a readable TOML file", but) from None
+    except tomllib.TOMLDecodeError as error:
+        raise ArgumentError("claims", "be a TOML file", f"'{path}' is not: {error}") from None
+    except ValidationError as error:
+        first = error.errors()[0]
+        place = ".".join(str(part) for part in first["loc"])
+        but = f"{place or 'a claim'} is wrong: {first['msg'].removeprefix('Value error, ')}"
+        raise ArgumentError("claims", f"be the paper's claims ('{path}')", but) from None
+    names = [claim.id for claim in claims]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        must = "have an id of its own each"
+        raise ArgumentError("claims", must, f"{', '.join(twice)} is there twice")
+    return claims
+
+
+def claim_of(name: str, claims: tuple[Claim, ...] | None = None) -> Claim:
+    """Return the claim of an id.
+
+    Raises
+    ------
+    ArgumentError
+        If there is none.
+    """
+    claims = load_claims() if claims is None else claims
+    for claim in claims:
+        if claim.id == name:
+            return claim
+    must = f"be one of {', '.join(claim.id for claim in claims)}"
+    raise ArgumentError("only", must, f"it is '{name}'")
+
+
+def paper_value(name: str) -> float:
+    """Return the paper's number of a claim, for what is computed from several of them."""
+    value = claim_of(name).paper
+    if value is None:
+        raise ArgumentError("claim", "have a number", f"'{name}' has none")
+    return value

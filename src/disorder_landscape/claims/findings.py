@@ -1,0 +1,101 @@
+"""What came out: for each claim our values, each with its verdict, and the claim's verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from disorder_landscape.chain import REPOSITORY
+from disorder_landscape.claims.claim import Claim, Measured, Stored, Verdict
+from disorder_landscape.claims.sources import ResultMissingError, provenance, stored_value
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """One value of ours, or the reason why there is none."""
+
+    source: Stored | Measured
+    value: float | None
+    verdict: Verdict
+    missing: str = ""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A claim and all that we have to say of it."""
+
+    claim: Claim
+    outcomes: tuple[Outcome, ...]
+    again: float | None = None
+    """The value of the quick measurement, measured again just now."""
+
+    @property
+    def deciding(self) -> Outcome | None:
+        """The first outcome that has a value."""
+        return next((one for one in self.outcomes if one.value is not None), None)
+
+    @property
+    def verdict(self) -> Verdict:
+        """That of the deciding outcome."""
+        return "not tested" if self.deciding is None else self.deciding.verdict
+
+    @property
+    def reason(self) -> str:
+        """Why the verdict is not "reproduced"."""
+        if self.verdict == "reproduced":
+            return ""
+        if self.verdict == "not tested" and self.outcomes:
+            return self.outcomes[0].missing
+        return self.claim.reason
+
+    @property
+    def command(self) -> str:
+        """What measures it again, if anything does."""
+        if self.claim.command is not None:
+            return self.claim.command
+        return "" if self.claim.measured is None else f"make claims ONLY={self.claim.id}"
+
+    @property
+    def disagreement(self) -> str:
+        """In what the value measured again is not the stored one, if it is not."""
+        source = self.claim.measured
+        if self.again is None or source is None:
+            return ""
+        stored = next(one.value for one in self.outcomes if one.source is source)
+        if stored is None or abs(self.again - stored) <= source.spread:
+            return ""
+        return (
+            f"{self.claim.id}: measured again it is {self.again:.6g}, stored is {stored:.6g}, "
+            f"and {source.spread:g} apart is what two runs may be"
+        )
+
+
+def stored_findings(claims: Iterable[Claim], root: Path = REPOSITORY) -> tuple[Finding, ...]:
+    """Return what the repository's files say of the claims, after checking where they come from.
+
+    Raises
+    ------
+    ArgumentError
+        If a file is damaged, lacks a value or does not tell how it was made.
+    """
+    return tuple(
+        Finding(claim, tuple(_outcome(claim, source, root) for source in claim.ours))
+        for claim in claims
+    )
+
+
+def with_measured(findings: Iterable[Finding], again: Mapping[str, float]) -> tuple[Finding, ...]:
+    """Return the findings with what has just been measured again, by id."""
+    return tuple(
+        Finding(one.claim, one.outcomes, again.get(one.claim.id, one.again)) for one in findings
+    )
+
+
+def _outcome(claim: Claim, source: Stored | Measured, root: Path) -> Outcome:
+    try:
+        provenance(claim, source, root)
+        value = stored_value(claim, source, root)
+    except ResultMissingError as missing:
+        return Outcome(source, None, "not tested", str(missing))
+    return Outcome(source, value, claim.judge(value))

@@ -1,0 +1,216 @@
+"""Quick measurements of the claims: each a function that returns one number, named in claims.toml.
+
+Those of a trained network are in `measurements_of_models`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+
+import numba as nb
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from disorder_landscape import stopwatches
+from disorder_landscape.arguments import ArgumentError
+from disorder_landscape.bench import DATASETS, PAPER_ENERGIES
+from disorder_landscape.claims import measurements_of_models
+from disorder_landscape.claims.claim import Measured, paper_value
+from disorder_landscape.physics import disorder
+from disorder_landscape.physics.parameters import ALPHA_RANGE, SITES, FloatArray, Nanowire
+from disorder_landscape.physics.topology import topological_visibility, transition_field
+
+TURNS = 5
+"""Turns of a stopwatch, of which the median counts; the first, which compiles, is one more."""
+LONG = 4000
+"""Sites of a wire whose transition is that of an infinite one."""
+DRAWS = 4000
+"""Realizations of the disorder, for its statistics."""
+
+
+def components_required(fidelity: float, correlation_length: float, sites: float = SITES) -> float:
+    """Return how many components give a fidelity F (S-II.3)."""
+    return disorder.components_required(fidelity, correlation_length, int(sites))
+
+
+def transition(mu: float) -> float:
+    """Return V_Z/√(μ² + γ²) where T_IV of a long pristine wire changes its sign."""
+    wire = Nanowire(np.zeros(LONG))
+    expected = float(transition_field(wire, mu))
+    B = expected * np.linspace(0.95, 1.05, 101)
+    T_IV = topological_visibility(wire, mu, B, barrier=False).sel(lead="L")[0].to_numpy()
+    last = int(np.flatnonzero(T_IV > 0)[-1])  # the last field at which it is trivial
+    part = T_IV[last] / (T_IV[last] - T_IV[last + 1])
+    return float((B[last] + part * (B[last + 1] - B[last])) / expected)
+
+
+def mean_spread(components: float) -> float:
+    """Return the standard deviation in meV of the mean potential of the realizations."""
+    return float(np.std(_realizations(int(components))[1]))
+
+
+def mean_told_by_components(components: float) -> float:
+    """Return R² of the best linear guess of the mean potential from c₁ … c_n."""
+    c, mean = _realizations(int(components))[:2]
+    half = DRAWS // 2
+    known = np.column_stack([np.ones(DRAWS), c])
+    weights = np.linalg.lstsq(known[:half], mean[:half], rcond=None)[0]
+    wrong = mean[half:] - known[half:] @ weights
+    return float(1 - np.mean(wrong**2) / np.var(mean[half:]))
+
+
+def potential_spread_from_scores(components: float, r2: str, delta_V: str, sigmas: float) -> float:
+    """Return σ_V = ΔV/√(1 − R²) by the paper's numbers, over that of our realizations.
+
+    Parameters
+    ----------
+    components : float
+        Of the model.
+    r2, delta_V : str
+        Ids of the paper's claims.
+    sigmas : float
+        How many standard deviations its ± means.
+    """
+    stated = paper_value(delta_V) / sigmas / np.sqrt(1 - paper_value(r2))
+    return float(stated / _realizations(int(components))[2])
+
+
+def core_hours_of_dataset(sets: float, realizations: str, seconds: str) -> float:
+    """Return the core-hours of a dataset by the paper's numbers, given by the ids of its claims."""
+    return sets * paper_value(realizations) * paper_value(seconds) / 3600
+
+
+def core_hours_of_components(
+    components: float, sets: float, prefactor: str, exponent: str, seconds: str
+) -> float:
+    """Return the core-hours for R² = 0.77 by the paper's own fit of Fig. 2 and time per set."""
+    realizations = float(paper_value(prefactor) * components ** paper_value(exponent))
+    return realizations * sets * paper_value(seconds) / 3600
+
+
+def kwant_set_seconds() -> float:
+    """Return the seconds Kwant needs for a set: the paper's 151 energies at one μ and B."""
+    return PAPER_ENERGIES * _median(stopwatches.kwant(_wire(SITES), *_grid()))
+
+
+def speed_of_exact_set() -> float:
+    """Return how many times faster our exact set is than Kwant's 151 energies, on one core."""
+    kwant, ours = stopwatches.kwant(_wire(SITES), *_grid()), stopwatches.sets(_wires(), *_grid())
+    turns = _in_turn(kwant, ours)
+    return float(np.median([PAPER_ENERGIES * slow / fast for slow, fast in turns]))
+
+
+def speed_per_energy() -> float:
+    """Return how many times faster one energy is than with Kwant, on one core."""
+    wire = _wire(SITES)
+    turns = _in_turn(stopwatches.kwant(wire, *_grid()), stopwatches.bare(wire, *_grid()))
+    return float(np.median([slow / fast for slow, fast in turns]))
+
+
+def two_thread_efficiency() -> float:
+    """Return the speed-up by a second thread, over two."""
+    one, two = (stopwatches.sets(_wires(), *_grid(), threads) for threads in (1, 2))
+    with threadpool_limits(1):
+        return float(np.median([alone / both / 2 for alone, both in _in_turn(one, two)]))
+
+
+def kwant_exponent() -> float:
+    """Return p of Kwant's time per energy ∝ L^p, from 300 and 1000 sites."""
+    lengths = (300, 1000)
+    of = [stopwatches.kwant(_wire(sites), *_grid()) for sites in lengths]
+    turns = np.array(_in_turn(*of))
+    return float(np.median(np.log(turns[:, 1] / turns[:, 0])) / np.log(lengths[1] / lengths[0]))
+
+
+def generation_over_training(model: str) -> float:
+    """Return core-hours of generating a model's dataset over those of training it.
+
+    Time of generation by the time of an exact set; training has two cores.
+    """
+    sets, training = measurements_of_models.sets_and_training_hours(model)
+    per_set = _median(stopwatches.sets(_wires(), *_grid()))
+    return sets * per_set / 3600 / (2 * training)
+
+
+MEASUREMENTS: dict[str, Callable[..., float]] = {
+    function.__name__: function
+    for function in (
+        components_required,
+        transition,
+        mean_spread,
+        mean_told_by_components,
+        potential_spread_from_scores,
+        core_hours_of_dataset,
+        core_hours_of_components,
+        kwant_set_seconds,
+        speed_of_exact_set,
+        speed_per_energy,
+        two_thread_efficiency,
+        kwant_exponent,
+        generation_over_training,
+        measurements_of_models.model_score,
+        measurements_of_models.loss_by_noise,
+        measurements_of_models.conductance_match,
+        measurements_of_models.visibility_match,
+    )
+}
+"""What a claim can name, by name."""
+
+
+def measure(source: Measured) -> float:
+    """Return the value of a quick measurement.
+
+    Raises
+    ------
+    ArgumentError
+        If there is no such function, or it takes other arguments.
+    """
+    must = f"name one of {', '.join(MEASUREMENTS)}"
+    if source.measure not in MEASUREMENTS:
+        raise ArgumentError("measure", must, f"it is '{source.measure}'")
+    return float(MEASUREMENTS[source.measure](**source.arguments))
+
+
+@cache
+def _realizations(components: int) -> tuple[FloatArray, FloatArray, float]:
+    """Return components (realization, component), means (realization) and σ_V, all in meV.
+
+    σ_V is the standard deviation of the potential without its mean.
+    """
+    rng = np.random.default_rng(0)
+    drawn = [disorder.disorder_realization(rng, components, SITES) for _ in range(DRAWS)]
+    c, V = (np.array(part) for part in zip(*drawn, strict=True))
+    mean = V.mean(axis=1)
+    return c, mean, float(np.std(V - mean[:, None]))
+
+
+def _wire(sites: int) -> Nanowire:
+    rng = np.random.default_rng(0)
+    potential = disorder.disorder_realization(rng, 5, sites)[1]
+    return Nanowire(potential, alpha=rng.uniform(*ALPHA_RANGE))
+
+
+def _wires() -> list[Nanowire]:
+    rng = np.random.default_rng(1)
+    return [Nanowire(disorder.disorder_realization(rng, 5, SITES)[1]) for _ in range(8)]
+
+
+def _grid() -> tuple[FloatArray, FloatArray]:
+    config = DATASETS["5 components"]
+    return config.mu, config.B
+
+
+def _in_turn(*watches: stopwatches.Stopwatch) -> list[tuple[float, ...]]:
+    """Return the times of each turn, in which all are measured one after the other."""
+    with threadpool_limits(1), stopwatches.numba_threads(1):
+        return [tuple(watch() for watch in watches) for _ in range(TURNS + 1)][1:]
+
+
+def _median(watch: stopwatches.Stopwatch) -> float:
+    return float(np.median(_in_turn(watch)))
+
+
+def cores() -> int:
+    """Return how many cores this machine has."""
+    return int(nb.config.NUMBA_DEFAULT_NUM_THREADS)

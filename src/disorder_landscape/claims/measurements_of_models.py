@@ -1,0 +1,134 @@
+"""Quick measurements of a shipped network, on the test realizations that are shipped with it."""
+
+from __future__ import annotations
+
+import csv
+from functools import cache
+
+import numpy as np
+import xarray as xr
+
+from disorder_landscape.chain import REPOSITORY
+from disorder_landscape.dataset.shards import VARIABLES
+from disorder_landscape.dataset.store import read_dataset
+from disorder_landscape.learning.metrics import Scores, score
+from disorder_landscape.learning.model import TrainedModel, load_model, load_model_config
+from disorder_landscape.learning.scaling import conductance_array, label_array
+from disorder_landscape.physics.disorder import potential_from_components
+from disorder_landscape.physics.labels import CONDUCTANCES
+from disorder_landscape.physics.parameters import FloatArray, Nanowire
+from disorder_landscape.physics.topology import topological_visibility
+from disorder_landscape.physics.transport import conductance
+
+DATA = REPOSITORY / "data_small"
+CHANNELS = {
+    "all": CONDUCTANCES,
+    "local": ("G_LL", "G_RR"),
+    "nonlocal": ("G_LR", "G_RL"),
+}
+NOISE_SEED = 0
+VISIBILITY_POINTS = 61, 81
+"""Grid of μ and B on which T_IV of inputs and predictions is compared."""
+
+
+def model_score(model: str, score: str, noise: float = 0.0, channels: str = "all") -> float:
+    """Return a score of a network on its shipped test set.
+
+    Parameters
+    ----------
+    model : str
+        Folder in data_small/models; its test set is data_small/<model>_test.nc.
+    score : {"r2", "delta_V", "delta_alpha"}
+    noise : float
+        Standard deviation in e²/h of a Gaussian error added to each conductance.
+    channels : {"all", "local", "nonlocal"}
+        Which conductances have the error.
+    """
+    return float(getattr(_scores(model, noise, channels), score))
+
+
+def loss_by_noise(model: str, noise: float) -> float:
+    """Return how much R² falls by a Gaussian error of the conductances in e²/h."""
+    return _scores(model, 0.0, "all").r2 - _scores(model, noise, "all").r2
+
+
+def conductance_match(model: str, channels: str) -> float:
+    """Return R² of the conductances of predicted wires against those of the wires themselves.
+
+    Over all realizations and settings of the test set, of the worse of the channels.
+    """
+    test, _ = _loaded(model)
+    config = load_model_config(DATA / "models" / model).dataset
+    simulated = conductance(
+        _wires(model, predicted=True), config.mu, config.B, config.bias, config.temperature
+    )
+    return min(_r2(test[name], simulated[name]) for name in CHANNELS[channels])
+
+
+def visibility_match(model: str) -> float:
+    """Return how well predicted wires are topological where the wires themselves are.
+
+    The (μ, B) at which both are, over those at which either is: 1 if they agree everywhere, 0 if
+    nowhere. Topological is where T_IV of the left end is negative.
+    """
+    config = load_model_config(DATA / "models" / model).dataset
+    mu, B = (
+        np.linspace(0.0, end, points)
+        for end, points in zip((config.mu_max, config.B_max), VISIBILITY_POINTS, strict=True)
+    )
+    true, predicted = (
+        topological_visibility(_wires(model, which), mu, B).sel(lead="L").to_numpy() < 0
+        for which in (False, True)
+    )
+    return float((true & predicted).sum() / (true | predicted).sum())
+
+
+def sets_and_training_hours(model: str) -> tuple[int, float]:
+    """Return how many (realization, μ, B) a network's dataset has, and the hours of training."""
+    folder = DATA / "models" / model
+    config = load_model_config(folder).dataset
+    with open(folder / "curves.csv", encoding="utf-8", newline="") as file:
+        seconds = sum(float(row["seconds"]) for row in csv.DictReader(file))
+    return config.realizations * config.mu_points * config.B_points, seconds / 3600
+
+
+@cache
+def _loaded(model: str) -> tuple[xr.Dataset, TrainedModel]:
+    test = read_dataset(DATA / f"{model}_test.nc", VARIABLES)
+    return test, load_model(DATA / "models" / model)
+
+
+@cache
+def _predicted(model: str, noise: float, channels: str) -> FloatArray:
+    """Return the labels that the network says, shape (realization, label)."""
+    test, network = _loaded(model)
+    X = conductance_array(test)
+    rng = np.random.default_rng(NOISE_SEED)
+    noisy = [CONDUCTANCES.index(name) for name in CHANNELS[channels]]
+    X[..., noisy] += rng.normal(0.0, noise, X[..., noisy].shape).astype(np.float32)
+    return network.predict_labels(X)
+
+
+def _scores(model: str, noise: float, channels: str) -> Scores:
+    test, network = _loaded(model)
+    dataset = network.config.dataset
+    Y = label_array(test, dataset.alpha_is_label)
+    return score(Y, _predicted(model, noise, channels), network.labels, dataset.sites)
+
+
+def _wires(model: str, predicted: bool) -> list[Nanowire]:
+    """Return the test wires, or those that the network says they are."""
+    test, network = _loaded(model)
+    if not predicted:
+        V, alpha = test["potential"].to_numpy(), test["alpha"].to_numpy()
+    else:
+        dataset = network.config.dataset
+        Y = _predicted(model, 0.0, "all")
+        V = potential_from_components(Y[:, : dataset.components], dataset.sites)
+        alpha = Y[:, -1] if dataset.alpha_is_label else np.full(len(Y), dataset.alpha_range[0])
+    return [Nanowire(one, alpha=float(a)) for one, a in zip(V, alpha, strict=True)]
+
+
+def _r2(true: xr.DataArray, other: xr.DataArray) -> float:
+    wrong = other.transpose(*true.dims).to_numpy() - true.to_numpy()
+    return float(1 - np.mean(wrong**2) / np.var(true.to_numpy()))

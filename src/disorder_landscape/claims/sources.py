@@ -1,0 +1,171 @@
+"""Our values, from the files that studies have left, and how those files were made.
+
+A study leaves claims/<study>.json and, where it has a table, claims/<study>.csv. The JSON file
+holds an object `provenance` with at least the command; where that has a `sha256`, the CSV file must
+have this checksum. Files under data_small have theirs in data_small/SHA256SUMS, and a model's
+config.json says what made it. Quick measurements are kept in claims/measured.json, each with the
+machine, versions and minutes.
+"""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import json
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from statistics import fmean, median
+from typing import Any
+
+from disorder_landscape.arguments import ArgumentError, require
+from disorder_landscape.chain import REPOSITORY
+from disorder_landscape.claims.claim import Claim, Measured, Stored
+from disorder_landscape.files import write_json
+
+MEASURED_FILE = "claims/measured.json"
+"""What `make claims` has measured before, from the root of the repository."""
+
+_REDUCE: dict[str, Callable[[list[float]], float]] = {
+    "only": lambda values: values[0],
+    "mean": fmean,
+    "median": median,
+    "min": min,
+    "max": max,
+    "sum": sum,
+}
+
+
+class ResultMissingError(Exception):
+    """What a value would come from is not there: the study has not run yet."""
+
+
+def stored_value(claim: Claim, source: Stored | Measured, root: Path = REPOSITORY) -> float:
+    """Return a value of ours from the repository.
+
+    Raises
+    ------
+    ResultMissingError
+        If there is no such file, or the quick measurement has never been stored.
+    ArgumentError
+        If the file is there but damaged, or holds no such value.
+    """
+    if isinstance(source, Measured):
+        return float(_stored_measurement(claim, source, root)["value"])
+    path = root / source.file
+    if not path.exists():
+        raise ResultMissingError(f"not tested yet: there is no {source.file}")
+    value = _from_json(path, source) if source.key is not None else _from_csv(path, source)
+    return source.times * value
+
+
+def provenance(claim: Claim, source: Stored | Measured, root: Path = REPOSITORY) -> dict[str, Any]:
+    """Return how a value was made, after checking its file.
+
+    Raises
+    ------
+    ResultMissingError
+        If the value is not there.
+    ArgumentError
+        If the file does not tell how it was made, or is another than the one whose checksum is
+        kept.
+    """
+    if isinstance(source, Measured):
+        stored = _stored_measurement(claim, source, root)
+        return {name: stored[name] for name in stored if name != "value"}
+    path = root / source.file
+    if not path.exists():
+        raise ResultMissingError(f"not tested yet: there is no {source.file}")
+    data = root / "data_small"
+    if path.is_relative_to(data):
+        lines = (data / "SHA256SUMS").read_text("utf-8").splitlines()
+        sums = {name: digest for digest, name in (line.split(maxsplit=1) for line in lines)}
+        _check_sum(path, sums.get(path.relative_to(data).as_posix()), "data_small/SHA256SUMS")
+        made: dict[str, Any] = _read_json(path.with_name("config.json"))
+    else:
+        made = _read_json(path.with_suffix(".json")).get("provenance", {})
+        if path.suffix == ".csv" and "sha256" in made:
+            _check_sum(path, made["sha256"], path.with_suffix(".json").name)
+    require(
+        "command" in made, "provenance", f"name the command that made {source.file}", "it lacks it"
+    )
+    return {name: made[name] for name in made if isinstance(made[name], str | int | float)}
+
+
+def _stored_measurement(claim: Claim, source: Measured, root: Path) -> dict[str, Any]:
+    if source.needs is not None and not (root / source.needs).exists():
+        raise ResultMissingError(f"not tested yet: there is no {source.needs}")
+    path = root / MEASURED_FILE
+    stored = _read_json(path) if path.exists() else {}
+    if claim.id not in stored:
+        raise ResultMissingError(f"not tested yet: `make claims ONLY={claim.id} STORE=1` does")
+    measurement: dict[str, Any] = stored[claim.id]
+    return measurement
+
+
+def _from_json(path: Path, source: Stored) -> float:
+    content: Any = _read_json(path)
+    for name in str(source.key).split("/"):
+        if not isinstance(content, dict) or name not in content:
+            raise ArgumentError(source.file, f"hold {source.key}", f"it lacks '{name}'")
+        content = content[name]
+    return _number(content, source)
+
+
+def _from_csv(path: Path, source: Stored) -> float:
+    with open(path, encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    for column in (*source.where, source.column):
+        present = bool(rows) and column in rows[0]
+        require(present, source.file, f"have a column {column}", "it has none, or no row")
+    kept = [row for row in rows if all(_same(row[c], v) for c, v in source.where.items())]
+    must = f"have {'one row' if source.reduce == 'only' else 'rows'} with {source.where}"
+    fits = len(kept) == 1 if source.reduce == "only" else len(kept) > 0
+    require(fits, source.file, must, f"it has {len(kept)}")
+    return _REDUCE[source.reduce]([_number(row[str(source.column)], source) for row in kept])
+
+
+def _same(cell: str, value: str | float) -> bool:
+    try:
+        return cell == value or float(cell) == float(value)
+    except ValueError:
+        return False
+
+
+def _number(value: Any, source: Stored) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        what = source.key or source.column
+        raise ArgumentError(source.file, f"hold a number as {what}", f"it is {value!r}") from None
+
+
+def _read_json(path: Path) -> dict[str, Any]:
+    """Return the object of a JSON file, with a sentence that names the file where it is none."""
+    try:
+        content = json.loads(path.read_text("utf-8"))
+    except OSError as error:
+        raise ArgumentError(path.name, "be there", f"it is not ({error.strerror})") from None
+    except ValueError as error:
+        raise ArgumentError(path.name, "be JSON", f"it is not: {error}") from None
+    require(isinstance(content, dict), path.name, "hold a JSON object", "it holds something else")
+    return dict(content)
+
+
+def _check_sum(path: Path, expected: object, listed_in: str) -> None:
+    found = hashlib.sha256(path.read_bytes()).hexdigest()
+    must = f"have the checksum in {listed_in}"
+    require(found == expected, path.name, must, "it has another, so it is another file")
+
+
+def stored_minutes(root: Path = REPOSITORY) -> dict[str, float]:
+    """Return how long each quick measurement took when it was stored, by id of its claim."""
+    path = root / MEASURED_FILE
+    stored = _read_json(path) if path.exists() else {}
+    return {name: float(of["minutes"]) for name, of in stored.items()}
+
+
+def store(measured: Mapping[str, Mapping[str, Any]], root: Path = REPOSITORY) -> None:
+    """Keep quick measurements, by id of their claim: value, minutes, machine and versions."""
+    path = root / MEASURED_FILE
+    stored = _read_json(path) if path.exists() else {}
+    write_json(path, dict(sorted({**stored, **measured}.items())))

@@ -1,0 +1,139 @@
+"""The claims in print: numbers as they are written, Markdown for people, JSON for programs."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from disorder_landscape.claims.claim import Claim
+from disorder_landscape.claims.findings import Finding, Outcome
+
+_SIGNS = {"at least": "≥", "at most": "≤", "exactly": "="}
+_MARKS = {"reproduced": "✓", "differs": "✗", "not tested": ""}
+
+
+def number(value: float) -> str:
+    """Return a number as it is printed: four digits, and more where it is close to one."""
+    if value == int(value) and abs(value) < 1e15:
+        return f"{int(value):,}"
+    if abs(value) >= 1000:
+        return f"{value:,.0f}"
+    near_one = 0.99 <= abs(value) < 1
+    return f"{value:.5f}".rstrip("0") if near_one else f"{value:.4g}".replace("e-0", "e-")
+
+
+def stated(claim: Claim) -> str:
+    """Return what the paper states: its words, or its number and unit."""
+    if claim.words is not None:
+        return claim.words
+    return "" if claim.paper is None else f"{number(claim.paper)} {claim.unit}".rstrip()
+
+
+def accepted(claim: Claim) -> str:
+    """Return which values of ours count as reproducing the paper's."""
+    if claim.paper is None:
+        return ""
+    if claim.sense == "within":
+        return f"{number(claim.paper)} ± {number(claim.tolerance)}"
+    side = {"at least": -1, "at most": 1, "exactly": 0}[claim.sense]
+    return f"{_SIGNS[claim.sense]} {number(claim.paper + side * claim.tolerance)}"
+
+
+def ours(finding: Finding, separator: str = "; ") -> str:
+    """Return our values with their scales, the deciding one first, each with its own verdict."""
+    there = [one for one in finding.outcomes if one.value is not None]
+    unit = f" {finding.claim.unit}" if finding.claim.unit else ""
+    return separator.join(_value(one, unit) for one in there)
+
+
+def _value(outcome: Outcome, unit: str) -> str:
+    assert outcome.value is not None
+    mark = _MARKS[outcome.verdict]
+    return f"{number(outcome.value)}{unit} {mark} ({outcome.source.scale})"
+
+
+def verdict(finding: Finding) -> str:
+    """Return the verdict with its reason and remark."""
+    said = [f"{finding.verdict}: {finding.reason}" if finding.reason else finding.verdict]
+    if finding.claim.remark and finding.deciding is not None:
+        said.append(finding.claim.remark)
+    return "; ".join(said)
+
+
+def tally(findings: Iterable[Finding]) -> str:
+    """Return how many claims have which verdict."""
+    count = Counter(finding.verdict for finding in findings)
+    return (
+        f"{count['reproduced']} reproduced, {count['differs']} differ, "
+        f"{count['not tested']} not tested"
+    )
+
+
+COLUMNS = ("claim", "paper", "accepted", "ours", "verdict", "measure it again", "minutes")
+
+
+def rows(findings: Iterable[Finding], minutes: dict[str, float]) -> list[tuple[str, ...]]:
+    """Return the cells of the table, a tuple of COLUMNS for each claim.
+
+    Parameters
+    ----------
+    findings : iterable of Finding
+    minutes : dict
+        Of quick measurements, by id of their claim; a study's stand in its claim.
+    """
+    table: list[tuple[str, ...]] = []
+    for finding in findings:
+        claim = finding.claim
+        taken = claim.minutes if claim.minutes is not None else minutes.get(claim.id)
+        table.append(
+            (
+                f"**{claim.id}** {claim.statement} ({claim.where})",
+                stated(claim),
+                accepted(claim),
+                ours(finding),
+                verdict(finding).replace("not tested: not tested", "not tested"),
+                f"`{finding.command}`" if finding.command else "",
+                "" if taken is None else f"{max(taken, 0.1):.2g}",
+            )
+        )
+    return table
+
+
+def markdown(columns: Sequence[str], table: Iterable[Sequence[str]]) -> str:
+    """Return a Markdown table."""
+    lines = [" | ".join(columns), "|".join("---" for _ in columns)]
+    lines += [" | ".join(cell.replace("|", "\\|") for cell in row) for row in table]
+    return "".join(f"| {line} |\n" if i != 1 else f"|{line}|\n" for i, line in enumerate(lines))
+
+
+def as_json(findings: Iterable[Finding]) -> list[dict[str, Any]]:
+    """Return the findings as what JSON can hold."""
+    return [
+        {
+            "id": one.claim.id,
+            "statement": one.claim.statement,
+            "where": one.claim.where,
+            "paper": one.claim.paper,
+            "words": one.claim.words,
+            "unit": one.claim.unit,
+            "sense": one.claim.sense,
+            "tolerance": one.claim.tolerance,
+            "ours": [
+                {
+                    "scale": outcome.source.scale,
+                    "value": outcome.value,
+                    "verdict": outcome.verdict,
+                    "missing": outcome.missing,
+                }
+                for outcome in one.outcomes
+            ],
+            "measured_again": one.again,
+            "verdict": one.verdict,
+            "reason": one.reason,
+            "remark": one.claim.remark,
+            "command": one.command,
+            "disagreement": one.disagreement,
+        }
+        for one in findings
+    ]
