@@ -25,14 +25,15 @@ COMPILE := .venv/bin/uv pip compile --universal --python-version 3.11 --generate
 
 STARTED := $(shell date +%s)
 
-.PHONY: help setup generate train evaluate figures $(FIGURES) bench accuracy test lint lock clean
+.PHONY: help setup generate train evaluate figures $(FIGURES) bench accuracy claims claims-table report
+.PHONY: test lint lock clean
 .SUFFIXES:
 # One after the other: each command uses all cores by itself.
 .NOTPARALLEL:
 
 help: ## list the targets
 	@echo 'make TARGET [PRESET=small|shipped|smoke|paper] [PYTHON=/path/to/python3]'
-	@sed -n 's/^\([a-z]*\):.*## /  \1\t/p' Makefile | expand -t 13
+	@sed -n 's/^\([a-z-]*\):.*## /  \1\t/p' Makefile | expand -t 15
 	@echo 'and one figure each: $(FIGURES)'
 
 setup: $(READY) ## make .venv from requirements.lock (a few minutes, once; the others do it themselves)
@@ -62,6 +63,16 @@ bench: $(READY) ## time the solvers, table and plot into build/bench (a few minu
 
 accuracy: $(READY) ## compare 2000 thermal averages with the integral by brute force
 	$(VENV_PYTHON) claims/accuracy.py
+
+# ONLY=id measures one claim; STORE=1 keeps what has been measured as the value that is stored.
+claims: $(READY) ## check the paper's claims: measure again what is quick, table into build/claims.md
+	$(VENV_PYTHON) -m disorder_landscape.claims $(addprefix --only ,$(ONLY)) $(if $(STORE),--store)
+
+claims-table: $(READY) ## write the README's table of claims from the stored results
+	$(VENV_PYTHON) -m disorder_landscape.claims --write-readme
+
+report: $(READY) ## claims, figures (those in build/figures) and conventions on one page, build/report.html
+	$(VENV_PYTHON) report/build.py
 
 test: $(READY) ## run the tests
 	$(VENV_PYTHON) -m pytest -n 2

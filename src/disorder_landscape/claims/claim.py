@@ -55,7 +55,7 @@ class Measured(_Table):
     """Name of a function of `claims.measurements`."""
     arguments: dict[str, str | float] = {}
     spread: Annotated[float, Field(ge=0)] = 0.0
-    """How far two runs may lie apart, also on different processors."""
+    """How far two runs may lie apart, also on different processors; above one, relative."""
     needs: str | None = None
     """A file or folder without which it cannot be measured: a study that has not run yet."""
 
@@ -115,7 +115,7 @@ class Claim(BaseModel):
         """
         if self.paper is None:
             return "not tested"
-        paper, rounding = self.paper, 1e-12 * max(abs(self.paper), abs(value))
+        paper, rounding = self.paper, 1e-12 * abs(self.paper)
         low, high = paper - self.tolerance - rounding, paper + self.tolerance + rounding
         holds = {
             "at least": value >= low,

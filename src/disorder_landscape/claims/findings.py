@@ -63,7 +63,7 @@ class Finding:
         if self.again is None or source is None:
             return ""
         stored = next(one.value for one in self.outcomes if one.source is source)
-        if stored is None or abs(self.again - stored) <= source.spread:
+        if stored is None or abs(self.again - stored) <= source.spread * max(1, abs(stored)):
             return ""
         return (
             f"{self.claim.id}: measured again it is {self.again:.6g}, stored is {stored:.6g}, "

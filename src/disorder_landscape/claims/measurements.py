@@ -5,6 +5,7 @@ Those of a trained network are in `measurements_of_models`.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from functools import cache
 
@@ -18,8 +19,15 @@ from disorder_landscape.bench import DATASETS, PAPER_ENERGIES
 from disorder_landscape.claims import measurements_of_models
 from disorder_landscape.claims.claim import Measured, paper_value
 from disorder_landscape.physics import disorder
-from disorder_landscape.physics.parameters import ALPHA_RANGE, SITES, FloatArray, Nanowire
+from disorder_landscape.physics.parameters import (
+    ALPHA_RANGE,
+    SITES,
+    TEMPERATURE,
+    FloatArray,
+    Nanowire,
+)
 from disorder_landscape.physics.topology import topological_visibility, transition_field
+from disorder_landscape.physics.transport import exact_average
 
 TURNS = 5
 """Turns of a stopwatch, of which the median counts; the first, which compiles, is one more."""
@@ -108,29 +116,29 @@ def speed_per_energy() -> float:
     return float(np.median([slow / fast for slow, fast in turns]))
 
 
-def two_thread_efficiency() -> float:
-    """Return the speed-up by a second thread, over two."""
-    one, two = (stopwatches.sets(_wires(), *_grid(), threads) for threads in (1, 2))
-    with threadpool_limits(1):
-        return float(np.median([alone / both / 2 for alone, both in _in_turn(one, two)]))
+def parallel_efficiency() -> float:
+    """Return the core-seconds of sets by one thread over those by two.
+
+    Core-seconds are the same on a busy machine, where a second thread would find no core.
+    """
+    turns = _in_turn(_core_seconds(1), _core_seconds(2))
+    return float(np.median([alone / both for alone, both in turns]))
 
 
-def kwant_exponent() -> float:
-    """Return p of Kwant's time per energy ∝ L^p, from 300 and 1000 sites."""
-    lengths = (300, 1000)
-    of = [stopwatches.kwant(_wire(sites), *_grid()) for sites in lengths]
-    turns = np.array(_in_turn(*of))
-    return float(np.median(np.log(turns[:, 1] / turns[:, 0])) / np.log(lengths[1] / lengths[0]))
+def kwant_exponent(shorter: float, longer: float) -> float:
+    """Return p of Kwant's time per energy ∝ L^p, from wires of so many sites."""
+    of = [stopwatches.kwant(_wire(int(sites)), *_grid()) for sites in (shorter, longer)]
+    slopes = [np.log(long / short) / np.log(longer / shorter) for short, long in _in_turn(*of)]
+    return float(np.median(slopes))
 
 
 def generation_over_training(model: str) -> float:
     """Return core-hours of generating a model's dataset over those of training it.
 
-    Time of generation by the time of an exact set; training has two cores.
+    Those of generation by the core-seconds of an exact set; training has two cores.
     """
     sets, training = measurements_of_models.sets_and_training_hours(model)
-    per_set = _median(stopwatches.sets(_wires(), *_grid()))
-    return sets * per_set / 3600 / (2 * training)
+    return sets * _median(_core_seconds(1)) / 3600 / (2 * training)
 
 
 MEASUREMENTS: dict[str, Callable[..., float]] = {
@@ -146,7 +154,7 @@ MEASUREMENTS: dict[str, Callable[..., float]] = {
         kwant_set_seconds,
         speed_of_exact_set,
         speed_per_energy,
-        two_thread_efficiency,
+        parallel_efficiency,
         kwant_exponent,
         generation_over_training,
         measurements_of_models.model_score,
@@ -205,6 +213,19 @@ def _in_turn(*watches: stopwatches.Stopwatch) -> list[tuple[float, ...]]:
     """Return the times of each turn, in which all are measured one after the other."""
     with threadpool_limits(1), stopwatches.numba_threads(1):
         return [tuple(watch() for watch in watches) for _ in range(TURNS + 1)][1:]
+
+
+def _core_seconds(threads: int) -> stopwatches.Stopwatch:
+    """Count core-seconds per exact set, of all threads together."""
+    wires, (mu, B) = _wires(), _grid()
+
+    def watch() -> float:
+        with stopwatches.numba_threads(min(threads, nb.config.NUMBA_NUM_THREADS)):
+            started = time.process_time()
+            exact_average(wires, mu, B, stopwatches.BIASES, TEMPERATURE)
+            return (time.process_time() - started) / (len(wires) * mu.size * B.size)
+
+    return watch
 
 
 def _median(watch: stopwatches.Stopwatch) -> float:

@@ -8,6 +8,7 @@ from functools import cache
 import numpy as np
 import xarray as xr
 
+from disorder_landscape.arguments import require
 from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.dataset.shards import VARIABLES
 from disorder_landscape.dataset.store import read_dataset
@@ -52,33 +53,38 @@ def loss_by_noise(model: str, noise: float) -> float:
     return _scores(model, 0.0, "all").r2 - _scores(model, noise, "all").r2
 
 
-def conductance_match(model: str, channels: str) -> float:
+def conductance_match(model: str, channels: str, mean: str) -> float:
     """Return R² of the conductances of predicted wires against those of the wires themselves.
 
     Over all realizations and settings of the test set, of the worse of the channels.
+
+    Parameters
+    ----------
+    model : str
+        As in `model_score`.
+    channels : {"local", "nonlocal", "all"}
+    mean : {"zero", "known"}
+        The predicted potentials' mean, which no label describes: as predicted, or the true one.
     """
     test, _ = _loaded(model)
-    config = load_model_config(DATA / "models" / model).dataset
-    simulated = conductance(
-        _wires(model, predicted=True), config.mu, config.B, config.bias, config.temperature
-    )
+    simulated = _simulated(model, mean)
     return min(_r2(test[name], simulated[name]) for name in CHANNELS[channels])
 
 
-def visibility_match(model: str) -> float:
+def visibility_match(model: str, mean: str) -> float:
     """Return how well predicted wires are topological where the wires themselves are.
 
     The (μ, B) at which both are, over those at which either is: 1 if they agree everywhere, 0 if
-    nowhere. Topological is where T_IV of the left end is negative.
+    nowhere. Topological is where T_IV of the left end is negative. Arguments as before.
     """
-    config = load_model_config(DATA / "models" / model).dataset
+    config = _loaded(model)[1].config.dataset
     mu, B = (
         np.linspace(0.0, end, points)
         for end, points in zip((config.mu_max, config.B_max), VISIBILITY_POINTS, strict=True)
     )
     true, predicted = (
-        topological_visibility(_wires(model, which), mu, B).sel(lead="L").to_numpy() < 0
-        for which in (False, True)
+        topological_visibility(wires, mu, B).sel(lead="L").to_numpy() < 0
+        for wires in (_test_wires(model), _predicted_wires(model, mean))
     )
     return float((true & predicted).sum() / (true | predicted).sum())
 
@@ -116,16 +122,29 @@ def _scores(model: str, noise: float, channels: str) -> Scores:
     return score(Y, _predicted(model, noise, channels), network.labels, dataset.sites)
 
 
-def _wires(model: str, predicted: bool) -> list[Nanowire]:
-    """Return the test wires, or those that the network says they are."""
+@cache
+def _simulated(model: str, mean: str) -> xr.Dataset:
+    """Return the conductances of the predicted wires, at the settings of the test set."""
+    config = _loaded(model)[1].config.dataset
+    wires = _predicted_wires(model, mean)
+    return conductance(wires, config.mu, config.B, config.bias, config.temperature)
+
+
+def _test_wires(model: str) -> list[Nanowire]:
+    test, _ = _loaded(model)
+    pairs = zip(test["potential"].to_numpy(), test["alpha"].to_numpy(), strict=True)
+    return [Nanowire(V, alpha=float(alpha)) for V, alpha in pairs]
+
+
+def _predicted_wires(model: str, mean: str) -> list[Nanowire]:
+    """Return the wires that the network says the test wires are."""
     test, network = _loaded(model)
-    if not predicted:
-        V, alpha = test["potential"].to_numpy(), test["alpha"].to_numpy()
-    else:
-        dataset = network.config.dataset
-        Y = _predicted(model, 0.0, "all")
-        V = potential_from_components(Y[:, : dataset.components], dataset.sites)
-        alpha = Y[:, -1] if dataset.alpha_is_label else np.full(len(Y), dataset.alpha_range[0])
+    dataset = network.config.dataset
+    Y = _predicted(model, 0.0, "all")
+    means = {"zero": np.zeros(len(Y)), "known": test["potential"].mean("site").to_numpy()}
+    require(mean in means, "mean", f"be one of {', '.join(means)}", f"it is '{mean}'")
+    V = potential_from_components(Y[:, : dataset.components], dataset.sites, means[mean])
+    alpha = Y[:, -1] if dataset.alpha_is_label else np.full(len(Y), dataset.alpha_range[0])
     return [Nanowire(one, alpha=float(a)) for one, a in zip(V, alpha, strict=True)]
 
 

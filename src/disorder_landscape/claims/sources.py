@@ -85,9 +85,8 @@ def provenance(claim: Claim, source: Stored | Measured, root: Path = REPOSITORY)
         made = _read_json(path.with_suffix(".json")).get("provenance", {})
         if path.suffix == ".csv" and "sha256" in made:
             _check_sum(path, made["sha256"], path.with_suffix(".json").name)
-    require(
-        "command" in made, "provenance", f"name the command that made {source.file}", "it lacks it"
-    )
+    must = "tell the command that made it in its provenance"
+    require("command" in made, source.file, must, "it does not")
     return {name: made[name] for name in made if isinstance(made[name], str | int | float)}
 
 

@@ -15,8 +15,10 @@ _MARKS = {"reproduced": "✓", "differs": "✗", "not tested": ""}
 
 def number(value: float) -> str:
     """Return a number as it is printed: four digits, and more where it is close to one."""
-    if value == int(value) and abs(value) < 1e15:
+    if value == int(value) and abs(value) < 1e8:
         return f"{int(value):,}"
+    if abs(value) >= 1e8:
+        return f"{value:.1e}".replace("e+0", "e")
     if abs(value) >= 1000:
         return f"{value:,.0f}"
     near_one = 0.99 <= abs(value) < 1

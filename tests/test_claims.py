@@ -1,0 +1,446 @@
+"""The claims: what the file says, how values are judged, where they come from, what is printed."""
+
+from __future__ import annotations
+
+import hashlib
+import inspect
+import json
+import re
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from disorder_landscape import ArgumentError, Nanowire, conductance
+from disorder_landscape.chain import REPOSITORY
+from disorder_landscape.claims import __main__ as command_line
+from disorder_landscape.claims import measurements, measurements_of_models, readme, table
+from disorder_landscape.claims.claim import Claim, load_claims
+from disorder_landscape.claims.findings import stored_findings, with_measured
+from disorder_landscape.claims.sources import provenance
+from disorder_landscape.config import Config
+from disorder_landscape.learning.scaling import LabelScaler
+from disorder_landscape.physics.disorder import disorder_realization
+
+ALL = load_claims()
+STUDY = {"scale": "small", "file": "claims/study.csv", "column": "R2", "where": {"n": 5}}
+KEPT = {"id": "x", "statement": "s", "where": "w", "command": "make help", "minutes": 1}
+
+
+def claim(**changes):
+    """A claim with a study's value to compare 0.95 with."""
+    return Claim.model_validate({**KEPT, "paper": 0.95, "ours": [STUDY], **changes})
+
+
+@pytest.fixture
+def study(tmp_path):
+    """Write the study's files into an otherwise empty repository."""
+    folder = tmp_path / "claims"
+    folder.mkdir()
+
+    def write(rows="n,R2\n5,0.96\n10,0.9\n", **made):
+        (folder / "study.csv").write_text(rows)
+        content = {"provenance": {"command": "make study", **made}, "fit": {"R2": 0.97}}
+        (folder / "study.json").write_text(json.dumps(content))
+        return tmp_path
+
+    return write
+
+
+# ---- claims.toml and the README -----------------------------------------------------------------
+
+
+def test_the_readme_says_what_the_claims_and_their_results_say():
+    text = readme.README.read_text("utf-8")
+    section = readme.claims_section(stored_findings(ALL))
+    assert readme.with_claims(text, section) == text, "run `make claims-table`"
+
+
+def test_every_verdict_that_is_not_reproduced_has_a_reason():
+    for found in stored_findings(ALL):
+        assert found.reason or found.verdict == "reproduced", found.claim.id
+
+
+def test_every_quick_measurement_exists_and_takes_its_arguments():
+    for one in ALL:
+        if one.measured is not None:
+            function = measurements.MEASUREMENTS[one.measured.measure]
+            inspect.signature(function).bind(**one.measured.arguments)
+
+
+def test_every_claim_named_by_another_exists():
+    ids = {one.id for one in ALL}
+    for one in ALL:
+        named = re.findall(r"(?:as for|as in|than|:) ([a-z0-9]+(?:-[a-z0-9.]+)+)", one.remark)
+        named += re.findall(r"(?:as for|it:|as in) ([a-z0-9]+(?:-[a-z0-9.]+)+)", one.reason)
+        assert set(named) <= ids, (one.id, named)
+
+
+def test_every_command_of_a_value_that_is_there_exists():
+    makefile = (REPOSITORY / "Makefile").read_text("utf-8")
+    targets = set(re.findall(r"^([a-z-]+):", makefile, re.MULTILINE))
+    scripts = (REPOSITORY / "paper_figures").glob("figure_*.py")
+    targets |= {"figure-" + script.stem.split("_")[1] for script in scripts}
+    presets = {path.stem for path in (REPOSITORY / "configs").glob("*.toml")}
+    for found in stored_findings(ALL):
+        if found.deciding is not None:
+            make, target, *rest = found.command.split()
+            options = dict(option.split("=") for option in rest)
+            assert (make, target in targets) == ("make", True), found.command
+            assert options.get("PRESET", "smoke") in presets, found.command
+            assert options.get("ONLY", "r2-five") in {one.id for one in ALL}, found.command
+
+
+# ---- one claim ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("sense", "tolerance", "reproduced", "differing"),
+    [
+        ("at least", 0.005, (0.945, 0.95, 1.0), (0.9449, -1e10)),
+        ("at most", 0.005, (0.955, 0.95, -3.0), (0.9551, np.inf)),
+        ("within", 0.005, (0.945, 0.955), (0.9449, 0.9551)),
+        ("exactly", 0, (0.95,), (0.9500001, 0.9499999)),
+    ],
+)
+def test_each_sense_of_a_tolerance(sense, tolerance, reproduced, differing):
+    one = claim(sense=sense, tolerance=tolerance)
+    assert [one.judge(value) for value in reproduced] == ["reproduced"] * len(reproduced)
+    assert [one.judge(value) for value in differing] == ["differs"] * len(differing)
+    assert one.judge(np.nan) == "differs"
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"sense": "about"}, "sense"),
+        ({"tolerance": -1}, "tolerance"),
+        ({"verdict": "reproduced"}, "verdict"),
+        ({"paper": None}, "number to compare"),
+        ({"sense": "exactly", "tolerance": 0.1}, "tolerance"),
+        ({"ours": []}, "reason"),
+        ({"minutes": None}, "minutes"),
+        ({"ours": [{"scale": "s", "file": "f"}]}, "key"),
+        ({"ours": [{"scale": "s", "measure": "m"}] * 2}, "one quick measurement"),
+        ({"id": "Not An Id"}, "id"),
+    ],
+)
+def test_a_wrong_claim_is_one_sentence(wrong, said, tmp_path):
+    content = {**KEPT, "paper": 0.95, "ours": [STUDY], **wrong}
+    file = tmp_path / "claims.toml"
+    file.write_text("[[claim]]\n" + "".join(_toml(k, v) for k, v in content.items()))
+    with pytest.raises(ArgumentError, match=f"^Argument claims must .*{said}"):
+        load_claims(file)
+
+
+def _toml(key, value):
+    if value is None:
+        return ""
+    if key == "ours":
+        inline = (", ".join(_toml(k, v).strip() for k, v in one.items()) for one in value)
+        return f"ours = [{', '.join('{' + one + '}' for one in inline)}]\n"
+    if isinstance(value, dict):
+        return f"{key} = {{{', '.join(_toml(k, v).strip() for k, v in value.items())}}}\n"
+    return f"{key} = {json.dumps(value)}\n"
+
+
+def test_two_claims_of_one_id_are_refused(tmp_path):
+    file = tmp_path / "claims.toml"
+    file.write_text(2 * '[[claim]]\nid = "x"\nstatement = "s"\nwhere = "w"\nreason = "r"\n')
+    with pytest.raises(ArgumentError, match="x is there twice"):
+        load_claims(file)
+
+
+# ---- values and where they come from ------------------------------------------------------------
+
+
+def test_a_claim_turns_on_when_its_study_has_run(study, tmp_path):
+    (before,) = stored_findings([claim(sense="at least")], tmp_path)
+    assert (before.verdict, before.deciding) == ("not tested", None)
+    assert before.reason == "not tested yet: there is no claims/study.csv"
+    (after,) = stored_findings([claim(sense="at least")], study())
+    assert (after.verdict, after.deciding.value) == ("reproduced", 0.96)
+    assert after.reason == ""
+
+
+def test_the_first_value_that_is_there_decides_and_each_has_its_verdict(study):
+    absent = {"scale": "full", "file": "claims/absent.json", "key": "R2"}
+    ten = {**STUDY, "scale": "ten", "where": {"n": 10}}
+    (found,) = stored_findings([claim(sense="at least", ours=[absent, STUDY, ten])], study())
+    assert [one.verdict for one in found.outcomes] == ["not tested", "reproduced", "differs"]
+    assert found.verdict == "reproduced"
+    assert table.ours(found) == "0.96 ✓ (small); 0.9 ✗ (ten)"
+
+
+@pytest.mark.parametrize(
+    ("source", "value"),
+    [
+        ({"where": {}, "reduce": "mean"}, 0.93),
+        ({"where": {}, "reduce": "min"}, 0.9),
+        ({"where": {"n": "10"}, "times": 2}, 1.8),
+        ({"where": {}, "column": None, "file": "claims/study.json", "key": "fit/R2"}, 0.97),
+    ],
+)
+def test_values_of_csv_and_json(source, value, study):
+    (found,) = stored_findings([claim(ours=[{**STUDY, **source}])], study())
+    assert found.deciding.value == pytest.approx(value)
+
+
+@pytest.mark.parametrize(
+    ("source", "said"),
+    [
+        ({"where": {"n": 7}}, "one row .* it has 0"),
+        ({"where": {}}, "one row .* it has 2"),
+        ({"column": "R3"}, "column R3"),
+        ({"column": "word", "where": {"n": 5}}, "a number as word"),
+        ({"where": {}, "column": None, "file": "claims/study.json", "key": "fit/p"}, "fit/p"),
+    ],
+)
+def test_a_study_without_the_value_is_an_error(source, said, study):
+    root = study("n,R2,word\n5,0.96,good\n10,0.9,bad\n")
+    with pytest.raises(ArgumentError, match=said):
+        stored_findings([claim(ours=[{**STUDY, **source}])], root)
+
+
+def test_a_result_must_tell_how_it_was_made(study):
+    root = study()
+    (root / "claims" / "study.json").write_text("{}")
+    with pytest.raises(ArgumentError, match="the command that made it"):
+        stored_findings([claim()], root)
+
+
+def test_a_result_must_have_its_checksum(study):
+    rows = "n,R2\n5,0.96\n"
+    root = study(rows, sha256=hashlib.sha256(rows.encode()).hexdigest(), minutes=3)
+    assert provenance(claim(), claim().ours[0], root) == {
+        "command": "make study",
+        "minutes": 3,
+        "sha256": hashlib.sha256(rows.encode()).hexdigest(),
+    }
+    (root / "claims" / "study.csv").write_text("n,R2\n5,0.99\n")
+    with pytest.raises(ArgumentError, match="another file"):
+        stored_findings([claim()], root)
+
+
+def test_shipped_data_must_have_the_checksum_that_is_shipped_with_them(tmp_path):
+    model = tmp_path / "data_small" / "models" / "m"
+    model.mkdir(parents=True)
+    (model / "metrics.json").write_text('{"r2": 0.97}')
+    (model / "config.json").write_text('{"command": "landscape train"}')
+    digest = hashlib.sha256(b'{"r2": 0.97}').hexdigest()
+    sums = tmp_path / "data_small" / "SHA256SUMS"
+    sums.write_text(f"{digest}  models/m/metrics.json\n")
+    source = {"scale": "s", "file": "data_small/models/m/metrics.json", "key": "r2"}
+    (found,) = stored_findings([claim(ours=[source], sense="at least")], tmp_path)
+    assert found.verdict == "reproduced"
+    sums.write_text(f"{'0' * 64}  models/m/metrics.json\n")
+    with pytest.raises(ArgumentError, match="another file"):
+        stored_findings([claim(ours=[source])], tmp_path)
+
+
+# ---- measuring again ----------------------------------------------------------------------------
+
+
+def quick(**changes):
+    source = {"scale": "s", "measure": "components_required", "spread": 0.01, **changes}
+    return claim(ours=[source], command=None, minutes=None)
+
+
+def stored_as(value, root):
+    (root / "claims").mkdir(exist_ok=True)
+    content = {"x": {"value": value, "minutes": 0.5, "command": "make claims ONLY=x STORE=1"}}
+    (root / "claims" / "measured.json").write_text(json.dumps(content))
+    return root
+
+
+@pytest.mark.parametrize(
+    ("stored", "again", "agrees"),
+    [(0.95, 0.959, True), (0.95, 0.961, False), (200, 201.9, True), (200, 203, False)],
+)
+def test_a_measurement_must_agree_with_the_stored_one(stored, again, agrees, tmp_path):
+    found = stored_findings([quick()], stored_as(stored, tmp_path))
+    (found,) = with_measured(found, {"x": again})
+    assert (found.disagreement == "") == agrees
+    assert found.deciding.value == stored  # what was measured again decides nothing
+
+
+def test_a_measurement_that_needs_a_study_waits_for_it(tmp_path):
+    waiting = quick(needs="data_small/models/ten_components")
+    (found,) = stored_findings([waiting], stored_as(0.95, tmp_path))
+    assert found.reason == "not tested yet: there is no data_small/models/ten_components"
+    (tmp_path / waiting.measured.needs).mkdir(parents=True)
+    (found,) = stored_findings([waiting], tmp_path)
+    assert found.verdict == "reproduced"
+
+
+@pytest.fixture
+def claims_command(monkeypatch, tmp_path, capsys):
+    """Run the command line where every measurement gives the same value at once."""
+
+    def run(*options, value=54.0):
+        monkeypatch.setattr(measurements, "measure", lambda source: value)
+        code = 0
+        try:
+            command_line.main([*options, "--output", str(tmp_path / "out")])
+        except SystemExit as stop:
+            code = stop.code
+        return code, capsys.readouterr()
+
+    return run
+
+
+def test_the_command_prints_and_writes_one_claim(claims_command, tmp_path):
+    code, said = claims_command("--only", "components-54")
+    assert code == 0
+    assert "components-54" in said.out
+    assert "1 claims: 1 reproduced" in said.out
+    written = json.loads((tmp_path / "out" / "claims.json").read_text("utf-8"))
+    (one,) = written["claims"]
+    assert (one["id"], one["paper"], one["measured_again"]) == ("components-54", 54, 54)
+    assert (tmp_path / "out" / "claims.md").read_text("utf-8").count("components-54") == 2
+
+
+def test_a_disagreement_is_said_and_fails(claims_command):
+    code, said = claims_command("--only", "components-54", value=39.0)
+    assert code == 1
+    assert "components-54: measured again it is 39, stored is 54" in said.err
+
+
+@pytest.mark.parametrize("options", [("--only", "nonesuch"), ("--stored", "--only", "R2")])
+def test_bad_input_is_one_sentence_and_writes_nothing(options, claims_command, tmp_path):
+    code, said = claims_command(*options)
+    assert code == 2
+    assert said.err.startswith("claims: Argument only must be one of ")
+    assert said.err.count("\n") == 1
+    assert not list(tmp_path.iterdir())
+
+
+def test_help_has_a_worked_example(capsys):
+    with pytest.raises(SystemExit):
+        command_line.main(["--help"])
+    assert "example: python -m disorder_landscape.claims --only" in capsys.readouterr().out
+
+
+# ---- the README's marks and the print of numbers ------------------------------------------------
+
+
+def test_the_section_is_replaced_and_nothing_else():
+    before = f"a\n{readme.BEGIN}\nold\n{readme.END}\nz\n"
+    section = f"{readme.BEGIN}\nnew\n{readme.END}"
+    assert readme.with_claims(before, section) == f"a\n{section}\nz\n"
+    for damaged in ("a\n", before + before, f"{readme.END}{readme.BEGIN}"):
+        with pytest.raises(ArgumentError, match="the two marks"):
+            readme.with_claims(damaged, section)
+
+
+@pytest.mark.parametrize(
+    ("value", "printed"),
+    [
+        (54.0, "54"),
+        (8000, "8,000"),
+        (1.2e6, "1,200,000"),
+        (66666.7, "66,667"),
+        (0.0350, "0.035"),
+        (0.994233, "0.99423"),
+        (0.99995, "0.99995"),
+        (-8.66e9, "-8.7e9"),
+        (1.3e-5, "1.3e-5"),
+    ],
+)
+def test_numbers_are_printed_short(value, printed):
+    assert table.number(value) == printed
+
+
+def test_markdown_escapes_what_would_end_a_cell():
+    assert table.markdown(("a", "b"), [("x|y", "")]) == "| a | b |\n|---|---|\n| x\\|y |  |\n"
+
+
+# ---- the measurements ---------------------------------------------------------------------------
+
+
+def test_arithmetic_of_the_papers_core_hours():
+    sets = {"sets": 400, "seconds": "set-seconds"}
+    hours = measurements.core_hours_of_dataset(realizations="realizations-ten", **sets)
+    assert hours == pytest.approx(50_000 * 400 * 12 / 3600)
+    fit = {"prefactor": "fig2-prefactor", "exponent": "fig2-exponent"}
+    for components in (30, 50):
+        needed = 0.0672 * components**4.9232
+        hours = measurements.core_hours_of_components(components, **sets, **fit)
+        assert hours == pytest.approx(needed * 400 * 12 / 3600)
+
+
+def test_the_transition_of_a_long_pristine_wire_is_where_theory_says():
+    assert measurements.transition(0.3) == pytest.approx(1, abs=0.02)
+
+
+def test_the_mean_is_told_by_no_component(monkeypatch):
+    monkeypatch.setattr(measurements, "DRAWS", 1000)
+    measurements._realizations.cache_clear()
+    assert abs(measurements.mean_told_by_components(5)) < 0.05
+    assert measurements.mean_spread(5) == pytest.approx(0.01, rel=0.1)
+    measurements._realizations.cache_clear()
+
+
+@dataclass
+class Oracle:
+    """A network that knows, and is wrong in c₁ by so much."""
+
+    config: Config
+    labels: LabelScaler
+    Y: np.ndarray
+    wrong: float = 0.0
+
+    def predict_labels(self, X):
+        self.noise = X
+        return self.Y + self.wrong * np.eye(self.Y.shape[1])[0]
+
+
+@pytest.fixture
+def oracle(monkeypatch):
+    """Four short wires, their conductances, and a network that knows them."""
+    grid = {"sites": 60, "mu_points": 2, "B_points": 3}
+    config = Config.model_validate({"dataset": {"realizations": 4, **grid}})
+    drawn = [disorder_realization(np.random.default_rng(i), 5, 60) for i in range(4)]
+    alpha = np.array([7.0, 7.5, 8.0, 8.5])
+    wires = [Nanowire(V, alpha=a) for (_, V), a in zip(drawn, alpha, strict=True)]
+    dataset = config.dataset
+    G = conductance(wires, dataset.mu, dataset.B, dataset.bias, dataset.temperature)
+    test = G.assign(
+        components=(("realization", "component"), np.array([c for c, _ in drawn])),
+        potential=(("realization", "site"), np.array([V for _, V in drawn])),
+        alpha=("realization", alpha),
+    )
+    Y = np.column_stack([test["components"], alpha])
+    names = (*(f"c_{n}" for n in range(1, 6)), "alpha")
+    network = Oracle(config, LabelScaler(names, Y.mean(axis=0), Y.std(axis=0)), Y)
+    monkeypatch.setattr(measurements_of_models, "_loaded", lambda model: (test, network))
+    monkeypatch.setattr(measurements_of_models, "VISIBILITY_POINTS", (5, 9))
+    return network
+
+
+def test_a_network_that_knows_scores_one(oracle):
+    for score, best in {"r2": 1.0, "delta_V": 0.0, "delta_alpha": 0.0}.items():
+        assert measurements_of_models.model_score("knows", score) == best
+    for channels in ("local", "nonlocal"):
+        match = measurements_of_models.conductance_match("knows", channels, "known")
+        assert match == pytest.approx(1, abs=1e-6)
+        assert measurements_of_models.conductance_match("knows", channels, "zero") < match
+    assert measurements_of_models.visibility_match("knows", "known") == 1
+    with pytest.raises(ArgumentError, match="mean must"):
+        measurements_of_models.visibility_match("knows", "wrong")
+
+
+def test_a_network_that_errs_scores_less(oracle):
+    oracle.wrong = 0.5
+    assert measurements_of_models.model_score("errs", "r2") < 1
+    assert measurements_of_models.conductance_match("errs", "local", "known") < 1
+
+
+def test_noise_is_added_to_the_channels_that_are_asked_for(oracle):
+    measurements_of_models.model_score("noise", "r2")
+    quiet = oracle.noise
+    measurements_of_models.model_score("noise", "r2", noise=0.05, channels="nonlocal")
+    error = oracle.noise - quiet
+    assert (error[..., :2] == 0).all()
+    assert error[..., 2:].std() == pytest.approx(0.05, rel=0.2)
+    assert measurements_of_models.loss_by_noise("noise", 0.05) == 0
