@@ -14,7 +14,7 @@ from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.claim import Stored, load_claims
 from disorder_landscape.claims.findings import Finding, Outcome, stored_findings
-from disorder_landscape.claims.sources import MEASURED_FILE, provenance, stored_minutes
+from disorder_landscape.claims.sources import MEASURED_FILE
 from disorder_landscape.claims.table import COLUMNS, number, rows, tally
 from disorder_landscape.dataset.store import read_dataset
 
@@ -52,7 +52,7 @@ def claims_summary() -> Markdown:
 def claims_table() -> Html:
     """Return the table of claims, as in the README."""
     found = stored_findings(load_claims())
-    table = rows(found, stored_minutes())
+    table = rows(found)
     classes = [one.verdict.replace(" ", "-") for one in found]
     ids = [one.claim.id for one in found]
     body = (_row(COLUMNS, row, *of) for row, *of in zip(table, classes, ids, strict=True))
@@ -75,7 +75,7 @@ def stored_results() -> Html:
 
 def _origin(finding: Finding, outcome: Outcome) -> tuple[str, ...]:
     source = outcome.source
-    made = provenance(finding.claim, source)
+    made = outcome.made
     value = "" if outcome.value is None else number(outcome.value)
     key = (source.key or source.column) if isinstance(source, Stored) else finding.claim.id
     file = source.file if isinstance(source, Stored) else MEASURED_FILE

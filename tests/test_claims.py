@@ -7,6 +7,7 @@ import inspect
 import json
 import re
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,13 +19,14 @@ from disorder_landscape.claims import measurements, measurements_of_models, read
 from disorder_landscape.claims.claim import Claim, load_claims
 from disorder_landscape.claims.findings import stored_findings, with_measured
 from disorder_landscape.claims.sources import provenance
+from disorder_landscape.cli import app
 from disorder_landscape.config import Config
 from disorder_landscape.learning.scaling import LabelScaler
 from disorder_landscape.physics.disorder import disorder_realization
 
 ALL = load_claims()
 STUDY = {"scale": "small", "file": "claims/study.csv", "column": "R2", "where": {"n": 5}}
-KEPT = {"id": "x", "statement": "s", "where": "w", "command": "make help", "minutes": 1}
+KEPT = {"id": "x", "statement": "s", "where": "w"}
 
 
 def claim(**changes):
@@ -77,18 +79,63 @@ def test_every_claim_named_by_another_exists():
 
 
 def test_every_command_of_a_value_that_is_there_exists():
+    for found in stored_findings(ALL):
+        if found.deciding is not None:
+            program, *words = found.command.split()
+            assert EXISTS[program](words), found.command
+
+
+def _make_exists(words):
     makefile = (REPOSITORY / "Makefile").read_text("utf-8")
     targets = set(re.findall(r"^([a-z-]+):", makefile, re.MULTILINE))
     scripts = (REPOSITORY / "paper_figures").glob("figure_*.py")
     targets |= {"figure-" + script.stem.split("_")[1] for script in scripts}
-    presets = {path.stem for path in (REPOSITORY / "configs").glob("*.toml")}
-    for found in stored_findings(ALL):
-        if found.deciding is not None:
-            make, target, *rest = found.command.split()
-            options = dict(option.split("=") for option in rest)
-            assert (make, target in targets) == ("make", True), found.command
-            assert options.get("PRESET", "smoke") in presets, found.command
-            assert options.get("ONLY", "r2-five") in {one.id for one in ALL}, found.command
+    given = dict(word.split("=") for word in words[1:])
+    allowed = {
+        "PRESET": {path.stem for path in (REPOSITORY / "configs").glob("*.toml")},
+        "ONLY": {one.id for one in ALL},
+    }
+    return words[0] in targets and all(value in allowed[name] for name, value in given.items())
+
+
+def _tests_exist(words):
+    chosen = words[words.index("-k") + 1]
+    pattern = re.compile(rf"^def test_\w*{chosen}", re.MULTILINE)
+    tests = Path(__file__).parent.rglob("test_*.py")
+    return any(pattern.search(path.read_text("utf-8")) for path in tests)
+
+
+EXISTS = {
+    "make": _make_exists,
+    "python": lambda words: (REPOSITORY / words[0]).is_file(),
+    "pytest": _tests_exist,
+    "landscape": lambda words: (
+        words[0] in {command.name for command in app.registered_commands}
+        or words[0] in {command.callback.__name__ for command in app.registered_commands}
+    ),
+}
+"""How each program that a command may name is checked."""
+
+
+@pytest.mark.parametrize(
+    ("command", "exists"),
+    [
+        ("make evaluate PRESET=small", True),
+        ("make figure-S9", True),
+        ("make nonesuch", False),
+        ("make evaluate PRESET=nonesuch", False),
+        ("make claims ONLY=nonesuch", False),
+        ("python claims/accuracy.py --wires 2000", True),
+        ("python claims/nonesuch.py", False),
+        ("landscape train", True),
+        ("landscape nonesuch", False),
+        ("pytest -k components_required", True),
+        ("pytest -k nonesuch", False),
+    ],
+)
+def test_commands_that_do_not_exist_are_noticed(command, exists):
+    program, *words = command.split()
+    assert EXISTS[program](words) == exists
 
 
 # ---- one claim ----------------------------------------------------------------------------------
@@ -119,7 +166,7 @@ def test_each_sense_of_a_tolerance(sense, tolerance, reproduced, differing):
         ({"paper": None}, "number to compare"),
         ({"sense": "exactly", "tolerance": 0.1}, "tolerance"),
         ({"ours": []}, "reason"),
-        ({"minutes": None}, "minutes"),
+        ({"command": "make help"}, "minutes"),
         ({"ours": [{"scale": "s", "file": "f"}]}, "key"),
         ({"ours": [{"scale": "s", "measure": "m"}] * 2}, "one quick measurement"),
         ({"id": "Not An Id"}, "id"),
@@ -157,7 +204,7 @@ def test_two_claims_of_one_id_are_refused(tmp_path):
 def test_a_claim_turns_on_when_its_study_has_run(study, tmp_path):
     (before,) = stored_findings([claim(sense="at least")], tmp_path)
     assert (before.verdict, before.deciding) == ("not tested", None)
-    assert before.reason == "not tested yet: there is no claims/study.csv"
+    assert before.reason == "there is no claims/study.csv"
     (after,) = stored_findings([claim(sense="at least")], study())
     assert (after.verdict, after.deciding.value) == ("reproduced", 0.96)
     assert after.reason == ""
@@ -184,6 +231,14 @@ def test_the_first_value_that_is_there_decides_and_each_has_its_verdict(study):
 def test_values_of_csv_and_json(source, value, study):
     (found,) = stored_findings([claim(ours=[{**STUDY, **source}])], study())
     assert found.deciding.value == pytest.approx(value)
+
+
+def test_what_a_study_took_is_what_it_says(study):
+    (found,) = stored_findings([claim()], study(minutes=12.4))
+    assert (found.command, found.minutes) == ("make study", 12.4)
+    assert table.measured_by(found) == "`make study`, 12 min"
+    (found,) = stored_findings([claim(command="make help", minutes=1)], study())
+    assert table.measured_by(found) == "`make help`, 1.0 min"
 
 
 @pytest.mark.parametrize(
@@ -243,7 +298,7 @@ def test_shipped_data_must_have_the_checksum_that_is_shipped_with_them(tmp_path)
 
 def quick(**changes):
     source = {"scale": "s", "measure": "components_required", "spread": 0.01, **changes}
-    return claim(ours=[source], command=None, minutes=None)
+    return claim(ours=[source])
 
 
 def stored_as(value, root):
@@ -267,7 +322,7 @@ def test_a_measurement_must_agree_with_the_stored_one(stored, again, agrees, tmp
 def test_a_measurement_that_needs_a_study_waits_for_it(tmp_path):
     waiting = quick(needs="data_small/models/ten_components")
     (found,) = stored_findings([waiting], stored_as(0.95, tmp_path))
-    assert found.reason == "not tested yet: there is no data_small/models/ten_components"
+    assert found.reason == "there is no data_small/models/ten_components"
     (tmp_path / waiting.measured.needs).mkdir(parents=True)
     (found,) = stored_findings([waiting], tmp_path)
     assert found.verdict == "reproduced"
@@ -343,8 +398,9 @@ def test_the_section_is_replaced_and_nothing_else():
         (0.0350, "0.035"),
         (0.994233, "0.99423"),
         (0.99995, "0.99995"),
-        (-8.66e9, "-8.7e9"),
-        (1.3e-5, "1.3e-5"),
+        (-0.00156, "−0.00156"),
+        (-8.66e9, "−8.7·10⁹"),
+        (1.3e-5, "1.3·10⁻⁵"),
     ],
 )
 def test_numbers_are_printed_short(value, printed):

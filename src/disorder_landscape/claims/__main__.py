@@ -22,12 +22,13 @@ from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.claim import Claim, claim_of, load_claims
 from disorder_landscape.claims.findings import Finding, stored_findings, with_measured
 from disorder_landscape.claims.readme import write_readme
-from disorder_landscape.claims.sources import store, stored_minutes
+from disorder_landscape.claims.sources import store
 from disorder_landscape.claims.table import (
     COLUMNS,
     accepted,
     as_json,
     markdown,
+    measured_by,
     number,
     ours,
     rows,
@@ -98,7 +99,7 @@ def _can(claim: Claim) -> bool:
 
 def _write(found: Sequence[Finding], folder: Path) -> None:
     write_json(folder / "claims.json", {"claims": as_json(found), "tally": tally(found)})
-    columns, table = (*COLUMNS, "now"), rows(found, stored_minutes())
+    columns, table = (*COLUMNS, "now"), rows(found)
     again = ["" if one.again is None else number(one.again) for one in found]
     text = markdown(columns, [(*row, now) for row, now in zip(table, again, strict=True)])
     with replacing(folder / "claims.md") as temporary:
@@ -114,8 +115,8 @@ def _print(found: Sequence[Finding], minutes: dict[str, float]) -> None:
             "paper": f"{stated(claim)}   accepted: {accepted(claim)}" if stated(claim) else "",
             "ours": ours(one, "\n" + " " * 14),
             "now": "" if one.again is None else f"{number(one.again)}, {minutes[claim.id]:.2f} min",
-            "verdict": verdict(one).replace("not tested: not tested", "not tested"),
-            "again by": f"{one.command}, {claim.minutes:g} min" if claim.minutes else one.command,
+            "verdict": verdict(one),
+            "by": measured_by(one).replace("`", ""),
         }
         for name, line in lines.items():
             if line:

@@ -85,9 +85,9 @@ class Claim(BaseModel):
     remark: str = ""
     """What should be known of the verdict, whichever it is."""
     command: str | None = None
-    """Measures it again; left out where `make claims ONLY=…` does."""
+    """Measures it again; left out where `make claims ONLY=…` or what the file says does."""
     minutes: Annotated[float, Field(ge=0)] | None = None
-    """What the command takes, on two cores unless the remark says otherwise."""
+    """What this command takes on two cores; left out with it."""
 
     @model_validator(mode="after")
     def _consistent(self) -> Claim:
@@ -97,10 +97,10 @@ class Claim(BaseModel):
             return self
         if self.paper is None or (self.sense == "exactly" and self.tolerance):
             raise ValueError(f"'{self.id}' needs a number to compare with, and its tolerance")
+        if (self.command is None) != (self.minutes is None):
+            raise ValueError(f"'{self.id}' must give its command and the minutes, or neither")
         if len([source for source in self.ours if isinstance(source, Measured)]) > 1:
             raise ValueError(f"'{self.id}' must have one quick measurement at most")
-        if self.measured is None and (self.command is None or self.minutes is None):
-            raise ValueError(f"'{self.id}' needs the command of its study, and its minutes")
         return self
 
     @property

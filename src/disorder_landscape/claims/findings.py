@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.claim import Claim, Measured, Stored, Verdict
@@ -19,6 +20,8 @@ class Outcome:
     value: float | None
     verdict: Verdict
     missing: str = ""
+    made: Mapping[str, Any] = field(default_factory=dict)
+    """How the value was made: command, maybe machine, minutes, versions."""
 
 
 @dataclass(frozen=True)
@@ -51,10 +54,21 @@ class Finding:
 
     @property
     def command(self) -> str:
-        """What measures it again, if anything does."""
-        if self.claim.command is not None:
-            return self.claim.command
-        return "" if self.claim.measured is None else f"make claims ONLY={self.claim.id}"
+        """What measures the deciding value again; empty where there is none."""
+        if self.deciding is None:
+            return ""
+        if isinstance(self.deciding.source, Measured):
+            return f"make claims ONLY={self.claim.id}"
+        return self.claim.command or str(self.deciding.made["command"])
+
+    @property
+    def minutes(self) -> float | None:
+        """What this command takes, where it is known."""
+        if self.deciding is None:
+            return None
+        if self.claim.minutes is not None and isinstance(self.deciding.source, Stored):
+            return self.claim.minutes
+        return self.deciding.made.get("minutes")
 
     @property
     def disagreement(self) -> str:
@@ -87,15 +101,13 @@ def stored_findings(claims: Iterable[Claim], root: Path = REPOSITORY) -> tuple[F
 
 def with_measured(findings: Iterable[Finding], again: Mapping[str, float]) -> tuple[Finding, ...]:
     """Return the findings with what has just been measured again, by id."""
-    return tuple(
-        Finding(one.claim, one.outcomes, again.get(one.claim.id, one.again)) for one in findings
-    )
+    return tuple(replace(one, again=again.get(one.claim.id)) for one in findings)
 
 
 def _outcome(claim: Claim, source: Stored | Measured, root: Path) -> Outcome:
     try:
-        provenance(claim, source, root)
+        made = provenance(claim, source, root)
         value = stored_value(claim, source, root)
     except ResultMissingError as missing:
         return Outcome(source, None, "not tested", str(missing))
-    return Outcome(source, value, claim.judge(value))
+    return Outcome(source, value, claim.judge(value), made=made)

@@ -18,7 +18,7 @@ from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.bench import DATASETS, PAPER_ENERGIES
 from disorder_landscape.claims import measurements_of_models
 from disorder_landscape.claims.claim import Measured, paper_value
-from disorder_landscape.physics import disorder
+from disorder_landscape.physics import disorder, kwant_solver
 from disorder_landscape.physics.parameters import (
     ALPHA_RANGE,
     SITES,
@@ -98,8 +98,8 @@ def core_hours_of_components(
 
 
 def kwant_set_seconds() -> float:
-    """Return the seconds Kwant needs for a set: the paper's 151 energies at one μ and B."""
-    return PAPER_ENERGIES * _median(stopwatches.kwant(_wire(SITES), *_grid()))
+    """Return the core-seconds Kwant needs for the paper's 151 energies at one μ and B."""
+    return PAPER_ENERGIES * float(np.median(_in_turn(_kwant_core_seconds(SITES))))
 
 
 def speed_of_exact_set() -> float:
@@ -126,9 +126,9 @@ def parallel_efficiency() -> float:
 
 
 def kwant_exponent(shorter: float, longer: float) -> float:
-    """Return p of Kwant's time per energy ∝ L^p, from wires of so many sites."""
-    of = [stopwatches.kwant(_wire(int(sites)), *_grid()) for sites in (shorter, longer)]
-    slopes = [np.log(long / short) / np.log(longer / shorter) for short, long in _in_turn(*of)]
+    """Return p of Kwant's core-seconds per energy ∝ L^p, from wires of so many sites."""
+    turns = _in_turn(*(_kwant_core_seconds(int(sites)) for sites in (shorter, longer)))
+    slopes = [np.log(long / short) / np.log(longer / shorter) for short, long in turns]
     return float(np.median(slopes))
 
 
@@ -138,7 +138,8 @@ def generation_over_training(model: str) -> float:
     Those of generation by the core-seconds of an exact set; training has two cores.
     """
     sets, training = measurements_of_models.sets_and_training_hours(model)
-    return sets * _median(_core_seconds(1)) / 3600 / (2 * training)
+    per_set = float(np.median(_in_turn(_core_seconds(1))))
+    return sets * per_set / 3600 / (2 * training)
 
 
 MEASUREMENTS: dict[str, Callable[..., float]] = {
@@ -228,8 +229,18 @@ def _core_seconds(threads: int) -> stopwatches.Stopwatch:
     return watch
 
 
-def _median(watch: stopwatches.Stopwatch) -> float:
-    return float(np.median(_in_turn(watch)))
+def _kwant_core_seconds(sites: int) -> stopwatches.Stopwatch:
+    """Count Kwant's core-seconds per energy, without building the system and the lead modes."""
+    wire, (mu, B) = _wire(sites), _grid()
+
+    def watch() -> float:
+        solved = kwant_solver.scattering_matrices(wire, mu, B[-1:], stopwatches.ENERGIES[7:8])
+        next(solved)  # builds the system and computes the modes
+        started = time.process_time()
+        done = [kwant_solver.conductances(matrix) for _, matrix in solved]
+        return (time.process_time() - started) / len(done)
+
+    return watch
 
 
 def cores() -> int:

@@ -8,7 +8,6 @@ from disorder_landscape.arguments import require
 from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.claim import load_claims
 from disorder_landscape.claims.findings import Finding, stored_findings
-from disorder_landscape.claims.sources import stored_minutes
 from disorder_landscape.claims.table import COLUMNS, markdown, rows, tally
 from disorder_landscape.files import replacing
 
@@ -19,7 +18,7 @@ END = "<!-- end of the claims -->"
 
 def claims_section(findings: tuple[Finding, ...]) -> str:
     """Return what stands between the marks."""
-    table = markdown(COLUMNS, rows(findings, stored_minutes()))
+    table = markdown(COLUMNS, rows(findings))
     return f"{BEGIN}\n\n{len(findings)} claims: {tally(findings)}.\n\n{table}\n{END}"
 
 

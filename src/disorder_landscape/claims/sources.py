@@ -53,7 +53,7 @@ def stored_value(claim: Claim, source: Stored | Measured, root: Path = REPOSITOR
         return float(_stored_measurement(claim, source, root)["value"])
     path = root / source.file
     if not path.exists():
-        raise ResultMissingError(f"not tested yet: there is no {source.file}")
+        raise ResultMissingError(f"there is no {source.file}")
     value = _from_json(path, source) if source.key is not None else _from_csv(path, source)
     return source.times * value
 
@@ -74,7 +74,7 @@ def provenance(claim: Claim, source: Stored | Measured, root: Path = REPOSITORY)
         return {name: stored[name] for name in stored if name != "value"}
     path = root / source.file
     if not path.exists():
-        raise ResultMissingError(f"not tested yet: there is no {source.file}")
+        raise ResultMissingError(f"there is no {source.file}")
     data = root / "data_small"
     if path.is_relative_to(data):
         lines = (data / "SHA256SUMS").read_text("utf-8").splitlines()
@@ -92,11 +92,11 @@ def provenance(claim: Claim, source: Stored | Measured, root: Path = REPOSITORY)
 
 def _stored_measurement(claim: Claim, source: Measured, root: Path) -> dict[str, Any]:
     if source.needs is not None and not (root / source.needs).exists():
-        raise ResultMissingError(f"not tested yet: there is no {source.needs}")
+        raise ResultMissingError(f"there is no {source.needs}")
     path = root / MEASURED_FILE
     stored = _read_json(path) if path.exists() else {}
     if claim.id not in stored:
-        raise ResultMissingError(f"not tested yet: `make claims ONLY={claim.id} STORE=1` does")
+        raise ResultMissingError(f"`make claims ONLY={claim.id} STORE=1` measures it")
     measurement: dict[str, Any] = stored[claim.id]
     return measurement
 
@@ -154,13 +154,6 @@ def _check_sum(path: Path, expected: object, listed_in: str) -> None:
     found = hashlib.sha256(path.read_bytes()).hexdigest()
     must = f"have the checksum in {listed_in}"
     require(found == expected, path.name, must, "it has another, so it is another file")
-
-
-def stored_minutes(root: Path = REPOSITORY) -> dict[str, float]:
-    """Return how long each quick measurement took when it was stored, by id of its claim."""
-    path = root / MEASURED_FILE
-    stored = _read_json(path) if path.exists() else {}
-    return {name: float(of["minutes"]) for name, of in stored.items()}
 
 
 def store(measured: Mapping[str, Mapping[str, Any]], root: Path = REPOSITORY) -> None:

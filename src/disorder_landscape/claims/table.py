@@ -13,23 +13,31 @@ _SIGNS = {"at least": "≥", "at most": "≤", "exactly": "="}
 _MARKS = {"reproduced": "✓", "differs": "✗", "not tested": ""}
 
 
-def number(value: float) -> str:
-    """Return a number as it is printed: four digits, and more where it is close to one."""
+_POWER = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def number(value: float, digits: int = 4) -> str:
+    """Return a number as it is printed: so many digits, and more where it is close to one."""
+    return _printed(value, digits).replace("-", "−")
+
+
+def _printed(value: float, digits: int) -> str:
     if value == int(value) and abs(value) < 1e8:
         return f"{int(value):,}"
-    if abs(value) >= 1e8:
-        return f"{value:.1e}".replace("e+0", "e")
+    if abs(value) >= 1e8 or 0 < abs(value) < 1e-4:
+        factor, power = f"{value:.1e}".split("e")
+        return f"{factor}·10{str(int(power)).translate(_POWER)}"
     if abs(value) >= 1000:
         return f"{value:,.0f}"
     near_one = 0.99 <= abs(value) < 1
-    return f"{value:.5f}".rstrip("0") if near_one else f"{value:.4g}".replace("e-0", "e-")
+    return f"{value:.5f}".rstrip("0") if near_one else f"{value:.{digits}g}"
 
 
 def stated(claim: Claim) -> str:
     """Return what the paper states: its words, or its number and unit."""
     if claim.words is not None:
         return claim.words
-    return "" if claim.paper is None else f"{number(claim.paper)} {claim.unit}".rstrip()
+    return "" if claim.paper is None else f"{number(claim.paper, 6)} {claim.unit}".rstrip()
 
 
 def accepted(claim: Claim) -> str:
@@ -37,9 +45,9 @@ def accepted(claim: Claim) -> str:
     if claim.paper is None:
         return ""
     if claim.sense == "within":
-        return f"{number(claim.paper)} ± {number(claim.tolerance)}"
+        return f"{number(claim.paper, 6)} ± {number(claim.tolerance)}"
     side = {"at least": -1, "at most": 1, "exactly": 0}[claim.sense]
-    return f"{_SIGNS[claim.sense]} {number(claim.paper + side * claim.tolerance)}"
+    return f"{_SIGNS[claim.sense]} {number(claim.paper + side * claim.tolerance, 6)}"
 
 
 def ours(finding: Finding, separator: str = "; ") -> str:
@@ -57,7 +65,8 @@ def _value(outcome: Outcome, unit: str) -> str:
 
 def verdict(finding: Finding) -> str:
     """Return the verdict with its reason and remark."""
-    said = [f"{finding.verdict}: {finding.reason}" if finding.reason else finding.verdict]
+    waits = finding.verdict == "not tested" and bool(finding.outcomes)
+    said = [finding.verdict + " yet" * waits + (f": {finding.reason}" if finding.reason else "")]
     if finding.claim.remark and finding.deciding is not None:
         said.append(finding.claim.remark)
     return "; ".join(said)
@@ -72,34 +81,31 @@ def tally(findings: Iterable[Finding]) -> str:
     )
 
 
-COLUMNS = ("claim", "paper", "accepted", "ours", "verdict", "measure it again", "minutes")
+COLUMNS = ("claim", "paper", "accepted", "ours", "verdict", "measured by")
 
 
-def rows(findings: Iterable[Finding], minutes: dict[str, float]) -> list[tuple[str, ...]]:
-    """Return the cells of the table, a tuple of COLUMNS for each claim.
-
-    Parameters
-    ----------
-    findings : iterable of Finding
-    minutes : dict
-        Of quick measurements, by id of their claim; a study's stand in its claim.
-    """
-    table: list[tuple[str, ...]] = []
-    for finding in findings:
-        claim = finding.claim
-        taken = claim.minutes if claim.minutes is not None else minutes.get(claim.id)
-        table.append(
-            (
-                f"**{claim.id}** {claim.statement} ({claim.where})",
-                stated(claim),
-                accepted(claim),
-                ours(finding),
-                verdict(finding).replace("not tested: not tested", "not tested"),
-                f"`{finding.command}`" if finding.command else "",
-                "" if taken is None else f"{max(taken, 0.1):.2g}",
-            )
+def rows(findings: Iterable[Finding]) -> list[tuple[str, ...]]:
+    """Return the cells of the table, a tuple of COLUMNS for each claim."""
+    return [
+        (
+            f"**{one.claim.id}** {one.claim.statement} ({one.claim.where})",
+            stated(one.claim),
+            accepted(one.claim),
+            ours(one),
+            verdict(one),
+            measured_by(one),
         )
-    return table
+        for one in findings
+    ]
+
+
+def measured_by(finding: Finding) -> str:
+    """Return the command that measures our value again, and its minutes."""
+    command = f"`{finding.command}`" if finding.command else ""
+    if finding.minutes is None:
+        return command
+    minutes = max(finding.minutes, 0.1)
+    return f"{command}, {minutes:.0f} min" if minutes >= 2 else f"{command}, {minutes:.1f} min"
 
 
 def markdown(columns: Sequence[str], table: Iterable[Sequence[str]]) -> str:
@@ -135,6 +141,7 @@ def as_json(findings: Iterable[Finding]) -> list[dict[str, Any]]:
             "reason": one.reason,
             "remark": one.claim.remark,
             "command": one.command,
+            "minutes": one.minutes,
             "disagreement": one.disagreement,
         }
         for one in findings
