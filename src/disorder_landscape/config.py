@@ -94,8 +94,10 @@ class DatasetConfig(_Section):
 
 
 class NetworkConfig(_Section):
-    """The size of the paper's network."""
+    """Which network, and its size."""
 
+    architecture: Literal["convolutional", "residual", "recurrent"] = "convolutional"
+    """The paper's network, a challenger, or the one that the paper tried first (S-II.2)."""
     width_fraction: Annotated[float, Field(gt=0, le=4)] = 1.0
     """Multiplies the filters of every convolution (Fig. S2); the paper's network is 1.0."""
 
@@ -103,10 +105,14 @@ class NetworkConfig(_Section):
 class TrainingConfig(_Section):
     """How the network is trained (S-II.2)."""
 
+    realizations: Positive | None = None
+    """How many of the training realizations are used; none takes all."""
     epochs: tuple[Positive, ...] = (15, 15, 10, 5)
     """Epochs of each set; the learning rate is divided by 10 from set to set."""
+    schedule: Literal["sets", "cosine"] = "sets"
+    """"cosine" lets the learning rate fall along a cosine instead, step by step, to zero."""
     learning_rate: LearningRate = 1e-4
-    """Learning rate of the first set."""
+    """Learning rate of the first set, or the largest of the cosine."""
     batch_size: Positive = 32
     test_fraction: Annotated[float, Field(gt=0, lt=1)] = 0.1
     """The last realizations are the test set."""
@@ -115,6 +121,8 @@ class TrainingConfig(_Section):
     """Feed asinh(G/s), standardised per pixel, instead of G."""
     mirror: bool = False
     """Train on mirrored wires too, and average predictions over the mirror."""
+    noise: Annotated[float, Field(ge=0, le=10)] = 0.0
+    """Standard deviation in e²/h of Gaussian errors, drawn anew at every step."""
     seed: Annotated[int, Field(ge=0)] = 0
 
 

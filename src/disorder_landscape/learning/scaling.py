@@ -23,6 +23,8 @@ AXES = ("mu", "B", "bias")
 """The measurement configurations K, in the order of the network's axes."""
 COMPRESSION: ConductanceArray = np.array([0.2, 0.2, 0.003, 0.003], dtype=np.float32)
 """Scale s in e²/h of asinh(G/s) per channel: typical local and nonlocal conductances."""
+ROWS_AT_A_TIME = 2000
+"""Realizations that are compressed at a time, for memory's sake."""
 
 
 def conductance_array(G: xr.Dataset) -> ConductanceArray:
@@ -132,11 +134,14 @@ class InputScaler:
     std: ConductanceArray
 
     @classmethod
-    def fit(cls, X: ConductanceArray) -> Self:
-        """Return the scaler of a training set, X of shape (realization, mu, B, bias, channel)."""
-        compressed = np.arcsinh(X / COMPRESSION)
-        fitted = StandardScaler().fit(compressed.reshape(len(X), -1))
-        shape = X.shape[1:]
+    def fit(cls, *parts: ConductanceArray) -> Self:
+        """Return the scaler of a training set, in parts (realization, mu, B, bias, channel)."""
+        fitted = StandardScaler()
+        for X in parts:
+            for start in range(0, len(X), ROWS_AT_A_TIME):
+                compressed = np.arcsinh(X[start : start + ROWS_AT_A_TIME] / COMPRESSION)
+                fitted.partial_fit(compressed.reshape(len(compressed), -1))
+        shape = parts[0].shape[1:]
         return cls(
             fitted.mean_.astype(np.float32).reshape(shape),
             fitted.scale_.astype(np.float32).reshape(shape),
