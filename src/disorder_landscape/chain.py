@@ -1,10 +1,10 @@
 """The chain of one run: dataset, trained network, test realizations with their predictions.
 
-A run is a configuration and a folder: build/<name>/dataset, build/<name>/model and
-build/<name>/evaluation.nc. A preset has a run for each of the paper's two models: of five
-components and α, configs/<preset>.toml, and of ten components, configs/<preset>_ten_components.toml
-or, where there is none, the shipped one. What is shipped needs no dataset: models and test sets are
-in data_small.
+A run is a configuration and a folder of results: build/<name>/model, build/<name>/evaluation.nc.
+Its dataset is in build/datasets, which all runs and studies share. A preset has a run for each of
+the paper's two models: of five components and α, configs/<preset>.toml, and of ten components,
+configs/<preset>_ten_components.toml or, where there is none, the shipped one. What is shipped needs
+no dataset: models and test sets are in data_small.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import xarray as xr
 from tqdm import tqdm
 
 from disorder_landscape.arguments import ArgumentError, require
-from disorder_landscape.config import Config, load_config
+from disorder_landscape.config import Config, DatasetConfig, load_config
 from disorder_landscape.dataset import shards
 from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
 from disorder_landscape.physics.labels import labelled
@@ -26,6 +26,11 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 SHIPPED = "shipped"
 FIVE, TEN = MODELS = "five_components_and_alpha", "ten_components"
 """The paper's two models, as they are named where they are shipped."""
+
+
+def dataset_folder(config: DatasetConfig, build: Path) -> Path:
+    """Return the folder of a dataset's shards, whoever asks for it."""
+    return build / "datasets" / config.hash
 
 
 @dataclass(frozen=True)
@@ -51,7 +56,7 @@ class Run:
     @property
     def dataset_folder(self) -> Path:
         """Folder of the shards."""
-        return self.folder / "dataset"
+        return dataset_folder(self.config.dataset, self.folder.parent)
 
     @property
     def model_folder(self) -> Path:

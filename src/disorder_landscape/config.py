@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import tomllib
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, TypeVar
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
@@ -24,6 +25,9 @@ from disorder_landscape.physics.parameters import (
 
 Positive = Annotated[int, Field(ge=1)]
 LearningRate = Annotated[float, Field(gt=0, le=1)]
+
+
+Model = TypeVar("Model", bound=BaseModel)
 
 
 class _Section(BaseModel):
@@ -158,21 +162,29 @@ class Config(_Section):
 
 
 def load_config(path: str | Path) -> Config:
-    """Read and check a TOML file.
+    """Read and check a run's TOML file.
 
     Raises
     ------
     ArgumentError
         If the file cannot be read, is not TOML, or has an unknown, missing or invalid key.
     """
+    return checked(Config, path, "config")
+
+
+def checked(
+    model: type[Model], path: str | Path, name: str, content: Mapping[str, object] | None = None
+) -> Model:
+    """Read a TOML file, or take its content as given, and check it against a model.
+
+    Raises
+    ------
+    ArgumentError
+        Of the given argument name, if the file cannot be read, is not TOML, or has an unknown,
+        missing or invalid key.
+    """
     try:
-        with open(path, "rb") as file:
-            return Config.model_validate(tomllib.load(file))
-    except OSError as error:
-        but = f"'{path}' cannot be read ({error.strerror})"
-        raise ArgumentError("config", "be a readable TOML file", but) from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise ArgumentError("config", "be a TOML file", f"'{path}' is not: {error}") from None
+        return model.model_validate(_read_toml(path, name) if content is None else content)
     except ValidationError as error:
         first = error.errors()[0]
         key = ".".join(str(part) for part in first["loc"]) or "the file"
@@ -181,4 +193,15 @@ def load_config(path: str | Path) -> Config:
             "missing": "it lacks the key {key}",
         }.get(first["type"], "{key} is wrong: {message}")
         but = said.format(key=key, message=first["msg"].removeprefix("Value error, "))
-        raise ArgumentError("config", f"describe a run ('{path}')", but) from None
+        raise ArgumentError(name, f"describe a run ('{path}')", but) from None
+
+
+def _read_toml(path: str | Path, name: str) -> dict[str, object]:
+    try:
+        with open(path, "rb") as file:
+            return tomllib.load(file)
+    except OSError as error:
+        but = f"'{path}' cannot be read ({error.strerror})"
+        raise ArgumentError(name, "be a readable TOML file", but) from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise ArgumentError(name, "be a TOML file", f"'{path}' is not: {error}") from None
