@@ -21,6 +21,7 @@ from disorder_landscape.physics.parameters import (
     SITES,
     TEMPERATURE,
     FloatArray,
+    Nanowire,
 )
 
 Positive = Annotated[int, Field(ge=1)]
@@ -32,6 +33,15 @@ Model = TypeVar("Model", bound=BaseModel)
 
 class _Section(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class WireConfig(_Section):
+    """What the paper keeps fixed of the wires, where a study wants it otherwise."""
+
+    barrier: Annotated[float, Field(ge=-1e3, le=1e3)] = Nanowire.barrier[0]
+    """V_Barrier on the first and on the last site, in meV."""
+    lead_mu: Annotated[float, Field(ge=-1e3, le=1e3)] = Nanowire.lead_mu
+    """Chemical potential of the leads in meV."""
 
 
 class DatasetConfig(_Section):
@@ -60,6 +70,7 @@ class DatasetConfig(_Section):
     """In K."""
     energy_spacing: Annotated[float, Field(gt=0, le=0.1)] | None = None
     """Of a grid of energies to average over, in meV, as the paper does; none averages exactly."""
+    wire: WireConfig = WireConfig()
     seed: Annotated[int, Field(ge=0)] = 0
     shard_size: Positive = 50
     """Realizations per file."""
@@ -93,7 +104,8 @@ class DatasetConfig(_Section):
     @property
     def hash(self) -> str:
         """Hash of everything that decides the content of a realization (not how many there are)."""
-        content = self.model_dump_json(exclude={"realizations"})
+        papers = {"wire"} if self.wire == WireConfig() else set()
+        content = self.model_dump_json(exclude={"realizations"} | papers)
         return hashlib.sha256(content.encode()).hexdigest()[:16]
 
 
