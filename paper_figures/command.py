@@ -12,7 +12,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from disorder_landscape.arguments import ArgumentError
-from disorder_landscape.chain import evaluation, preset_config
+from disorder_landscape.chain import FIVE, Run, evaluation, preset_run
 from disorder_landscape.config import Config
 from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
 from disorder_landscape.files import replacing
@@ -26,12 +26,16 @@ EVALUATED = [
 
 @dataclass(frozen=True)
 class Request:
-    """What a figure is asked to show: a preset's configuration and test realizations."""
+    """What a figure is asked to show: a run's configuration and test realizations."""
 
-    preset: str
-    config: Config
+    run: Run
     evaluation_file: Path | None = None
     """Test realizations and predictions to draw instead of the preset's own."""
+
+    @property
+    def config(self) -> Config:
+        """The run's configuration."""
+        return self.run.config
 
     def evaluation(self) -> xr.Dataset:
         """Return the test realizations and predictions, making first what is missing.
@@ -44,23 +48,24 @@ class Request:
         """
         if self.evaluation_file is not None:
             return read_dataset(self.evaluation_file, EVALUATED)
-        return evaluation(self.preset)
+        return evaluation(self.run)
 
 
 def figure_script(
-    name: str,
+    path: str,
     data: Callable[[Request], xr.Dataset],
     draw: Callable[[xr.Dataset], Figure],
     description: str,
     arguments: Sequence[str] | None = None,
     preset: str = "small",
+    model: str = FIVE,
 ) -> None:
-    """Run one figure's script: write <name>.nc, <name>.pdf and <name>.png.
+    """Run one figure's script: figure_3_….py writes figure_3.nc, figure_3.pdf and figure_3.png.
 
     Parameters
     ----------
-    name : str
-        Like figure_3, the names of the files.
+    path : str
+        The script's own.
     data : callable
         Makes all that is drawn.
     draw : callable
@@ -71,11 +76,14 @@ def figure_script(
         The command line; by default the process's.
     preset : str
         Preset to draw if none is named.
+    model : str
+        Which of the paper's two models it shows, as in `chain.preset_run`.
     """
-    script = Path(sys.modules[data.__module__].__file__ or name).name
+    script = Path(path).name
+    name = "_".join(script.split("_")[:2])
     options = _parse(script, description, preset, arguments)
     try:
-        request = Request(options.preset, preset_config(options.preset), options.evaluation)
+        request = Request(preset_run(options.preset, model=model), options.evaluation)
         drawn = data(request)
         command = f"python paper_figures/{script} --preset {options.preset}"
         attrs = {**provenance(command), "preset": options.preset}

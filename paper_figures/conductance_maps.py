@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
@@ -29,26 +31,35 @@ TITLE, BARS = 0.36, 0.83
 """Room above and below the panels of a block, in inches."""
 
 
-def draw_conductance_blocks(data: xr.Dataset, y: str) -> Figure:
-    """Draw a block of 2 × 4 maps per realization, two blocks side by side.
+def blocks_height(realizations: int, y: str) -> float:
+    """Return the room in inches that the blocks of so many realizations need."""
+    return -(-realizations // 2) * _block_size(y)[1]
+
+
+def draw_conductance_blocks(
+    figure: Figure, data: xr.Dataset, y: str, names: Sequence[str] | None = None
+) -> None:
+    """Draw a block of 2 × 4 maps per realization, two blocks side by side, at the figure's foot.
 
     Input and prediction share the norm of each conductance.
 
     Parameters
     ----------
+    figure : Figure
+        Of full width, and at least of `blocks_height`.
     data : Dataset
         G_LL … G_RL (realization, row, B, y) in e²/h and alpha (realization, row).
     y : {"bias", "mu"}
         Upward axis.
+    names : sequence of str, optional
+        Of the blocks; by default a, b, c, …
     """
-    panel = (FULL_WIDTH - LEFT[y] - RIGHT - BETWEEN_BLOCKS - 6 * GAP) / 8
-    block_width = 4 * panel + 3 * GAP
-    block_height = TITLE + 2 * panel + GAP + BARS
-    figure = Figure(figsize=(FULL_WIDTH, block_height * -(-data.sizes["realization"] // 2)))
-    for i, letter in enumerate(letters(data)):
+    block_width, block_height, panel = _block_size(y)
+    head = blocks_height(data.sizes["realization"], y)
+    for i, name in enumerate(names or letters(data)):
         left = LEFT[y] + (i % 2) * (block_width + BETWEEN_BLOCKS)
-        top = figure.get_figheight() - (i // 2) * block_height
-        write(figure, left, top - 0.03, f"({letter})  {alphas(data, i)}")
+        top = head - (i // 2) * block_height
+        write(figure, left, top - 0.03, f"({name})  {alphas(data, i)}")
         panels = _draw_maps(figure, data.isel(realization=i), y, left, top - TITLE, panel)
         if i % 2 == 0:
             label_rows(panels, ROWS, y)
@@ -57,7 +68,12 @@ def draw_conductance_blocks(data: xr.Dataset, y: str) -> Figure:
                 axes.set_ylabel("")
                 axes.tick_params(labelleft=False)
         _draw_colour_bars(figure, data.isel(realization=i), left, top - block_height + 0.39, panel)
-    return figure
+
+
+def _block_size(y: str) -> tuple[float, float, float]:
+    """Return width and height of a block and the width of a panel, in inches."""
+    panel = (FULL_WIDTH - LEFT[y] - RIGHT - BETWEEN_BLOCKS - 6 * GAP) / 8
+    return 4 * panel + 3 * GAP, TITLE + 2 * panel + GAP + BARS, panel
 
 
 def _draw_maps(

@@ -232,7 +232,7 @@ def _draw_legend(figure: Figure, data: xr.Dataset) -> None:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Make the figure's files."""
-    figure_script("figure_1", data, draw, __doc__ or "", arguments, preset="paper")
+    figure_script(__file__, data, draw, __doc__ or "", arguments, preset="paper")
 
 
 if __name__ == "__main__":

@@ -13,9 +13,10 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from command import Request, figure_script
-from conductance_maps import draw_conductance_blocks
+from conductance_maps import blocks_height, draw_conductance_blocks
 from disorder_landscape import Nanowire, conductance
 from disorder_landscape.physics.labels import CONDUCTANCES
+from plotting import FULL_WIDTH
 from wires import drawn_realizations, simulate_rows
 
 MU = 0.0
@@ -43,12 +44,14 @@ def data(request: Request) -> xr.Dataset:
 
 def draw(data: xr.Dataset) -> Figure:
     """Draw the figure."""
-    return draw_conductance_blocks(data, "bias")
+    figure = Figure(figsize=(FULL_WIDTH, blocks_height(data.sizes["realization"], "bias")))
+    draw_conductance_blocks(figure, data, "bias")
+    return figure
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Make the figure's files."""
-    figure_script("figure_3", data, draw, __doc__ or "", arguments)
+    figure_script(__file__, data, draw, __doc__ or "", arguments)
 
 
 if __name__ == "__main__":

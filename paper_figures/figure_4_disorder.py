@@ -8,100 +8,30 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 
 from command import Request, figure_script
-from disorder_landscape import Nanowire
-from plotting import FULL_WIDTH, INPUT, PREDICTION, inches, keep_labels_inside, write
-from wires import drawn_realizations, in_rows, letters
-
-LEFT, RIGHT, TOP, GAP = 0.58, 0.08, 0.42, 0.1
-COMPONENTS, POTENTIAL = (2.12, 1.1), (0.38, 1.3)
-"""Bottom and height of the panels, in inches."""
-HEIGHT = COMPONENTS[0] + COMPONENTS[1] + TOP
+from disorder_panels import HEIGHT, disorder_data, draw_disorder
+from plotting import FULL_WIDTH
+from wires import drawn_realizations
 
 
 def data(request: Request) -> xr.Dataset:
-    """Return components and potential of input and prediction.
-
-    Returns
-    -------
-    xarray.Dataset
-        components (realization, row, component) and potential (realization, row, site) in meV,
-        the latter with barriers; alpha (realization, row) in meV nm; x (site) in µm; the height of
-        the barriers in meV as attribute.
-    """
-    table = in_rows(drawn_realizations(request.evaluation(), request.config))
-    wires = [[Nanowire(V) for V in pair] for pair in table["potential"].to_numpy()]
-    potential = np.array([[wire.potential_with_barriers for wire in pair] for pair in wires])
-    attrs = {"units": "meV", "long_name": "disorder potential with barriers"}
-    x = (table["site"].to_numpy() + 0.5) * wires[0][0].lattice / 1000
-    drawn = table.assign(potential=(table["potential"].dims, potential, attrs)).assign_coords(
-        x=("site", x, {"units": "um", "long_name": "position along the wire"})
-    )
-    return drawn.assign_attrs(barrier=wires[0][0].barrier[0])
+    """Return components and potential of input and prediction, as `disorder_data`."""
+    return disorder_data(drawn_realizations(request.evaluation(), request.config))
 
 
 def draw(data: xr.Dataset) -> Figure:
     """Draw the figure."""
-    count = data.sizes["realization"]
-    width = (FULL_WIDTH - LEFT - RIGHT - (count - 1) * GAP) / count
     figure = Figure(figsize=(FULL_WIDTH, HEIGHT))
-    for i, letter in enumerate(letters(data)):
-        left = LEFT + i * (width + GAP)
-        upper = inches(figure, left, COMPONENTS[0], width, COMPONENTS[1])
-        lower = inches(figure, left, POTENTIAL[0], width, POTENTIAL[1])
-        _draw_components(upper, data, i)
-        _draw_potentials(lower, data, i)
-        upper.set_title(f"realization {letter}")
-        if i > 0:
-            upper.tick_params(labelleft=False)
-            lower.tick_params(labelleft=False)
-        else:
-            upper.set_ylabel("$c_n$ [meV]")
-            lower.set_ylabel(r"$V_\mathrm{dis}(x)$ [meV]")
-            note = rf"$\leftarrow$ barrier, {data.attrs['barrier']:g} meV"
-            lower.annotate(note, (0.06, 0.97), xycoords="axes fraction", va="top", fontsize=8)
-    handles = figure.axes[0].get_legend_handles_labels()[0]
-    figure.legend(handles=handles[::-1], loc="upper right", ncols=2)
-    write(figure, 0.04, COMPONENTS[0] + COMPONENTS[1] + 0.18, "(a)")
-    write(figure, 0.04, POTENTIAL[0] + POTENTIAL[1] + 0.18, "(b)")
+    draw_disorder(figure, data)
     return figure
-
-
-def _draw_components(axes: Axes, data: xr.Dataset, i: int) -> None:
-    n = data["component"].to_numpy()
-    true, predicted = data["components"][i].to_numpy()
-    axes.axhline(0.0, color="0.6", lw=0.5)
-    axes.bar(n, true, 0.55, color=INPUT, alpha=0.55, lw=0, label="input")
-    axes.plot(n, predicted, "D", color=PREDICTION, mfc="none", ms=4, label="prediction")
-    largest = 1.15 * float(np.abs(data["components"]).max())
-    axes.set(ylim=(-largest, largest), xlim=(n[0] - 0.6, n[-1] + 0.6), xlabel="$n$")
-    axes.set_xticks(n[:: 1 + (n.size - 1) // 10])
-
-
-def _draw_potentials(axes: Axes, data: xr.Dataset, i: int) -> None:
-    x = data["x"].to_numpy()
-    true, predicted = data["potential"][i].to_numpy()
-    axes.axhline(0.0, color="0.6", lw=0.5)
-    axes.plot(x, true, color=INPUT, lw=1.2, label="input")
-    axes.plot(x, predicted, "--", color=PREDICTION, lw=1.2, dashes=(3, 1.5), label="prediction")
-    inner = data["potential"][..., 1:-1]  # without the barriers
-    largest = float(np.abs(inner).max())
-    axes.set(ylim=(-1.15 * largest, 1.5 * largest), xlim=(-0.02 * x[-1], 1.02 * x[-1] + x[0]))
-    axes.set_xlabel(r"$x$ [µm]")
-    ticks = [tick for tick in MaxNLocator(3).tick_values(0.0, x[-1]) if tick < 1.02 * x[-1]]
-    axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
-    keep_labels_inside(axes.xaxis)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Make the figure's files."""
-    figure_script("figure_4", data, draw, __doc__ or "", arguments)
+    figure_script(__file__, data, draw, __doc__ or "", arguments)
 
 
 if __name__ == "__main__":

@@ -12,9 +12,10 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from command import Request, figure_script
-from conductance_maps import draw_conductance_blocks
+from conductance_maps import blocks_height, draw_conductance_blocks
 from disorder_landscape import Nanowire, conductance
 from disorder_landscape.physics.labels import CONDUCTANCES
+from plotting import FULL_WIDTH
 from wires import drawn_realizations, simulate_rows
 
 BIAS = 0.0
@@ -42,12 +43,14 @@ def data(request: Request) -> xr.Dataset:
 
 def draw(data: xr.Dataset) -> Figure:
     """Draw the figure."""
-    return draw_conductance_blocks(data, "mu")
+    figure = Figure(figsize=(FULL_WIDTH, blocks_height(data.sizes["realization"], "mu")))
+    draw_conductance_blocks(figure, data, "mu")
+    return figure
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Make the figure's files."""
-    figure_script("figure_S5", data, draw, __doc__ or "", arguments)
+    figure_script(__file__, data, draw, __doc__ or "", arguments)
 
 
 if __name__ == "__main__":

@@ -74,7 +74,7 @@ def draw(data: xr.Dataset) -> Figure:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Make the figure's files."""
-    figure_script("figure_S7", data, draw, __doc__ or "", arguments)
+    figure_script(__file__, data, draw, __doc__ or "", arguments)
 
 
 if __name__ == "__main__":

@@ -158,7 +158,7 @@ def _draw_conductances(figure: Figure, data: xr.Dataset, letter: str, bottom: fl
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Make the figure's files."""
-    figure_script("figure_S9", data, draw, __doc__ or "", arguments)
+    figure_script(__file__, data, draw, __doc__ or "", arguments)
 
 
 if __name__ == "__main__":

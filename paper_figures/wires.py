@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
+import numpy as np
 import xarray as xr
 from tqdm import tqdm
 
@@ -85,7 +86,12 @@ def letters(data: xr.Dataset) -> list[str]:
 
 
 def alphas(data: xr.Dataset, i: int) -> str:
-    """Return what a realization's α is and what the network says, for a title."""
+    """Return what a realization's α is and what the network says, for a title.
+
+    Nothing where it is fixed, and so known.
+    """
+    if len(np.unique(data["alpha"])) == 1:
+        return ""
     true, predicted = (float(alpha) for alpha in data["alpha"][i])
     return rf"$\alpha$ = {true:.2f}, predicted {predicted:.2f} meV nm"
 

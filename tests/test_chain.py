@@ -106,11 +106,20 @@ def test_a_measurement_on_another_grid_is_refused(run):
         predict(run.model_folder, G)
 
 
-def test_the_shipped_model_predicts_the_shipped_test_set(tmp_path):
-    shipped = chain.evaluation("shipped", tmp_path)
-    assert load_model_config(chain.SHIPPED_MODEL).dataset.realizations == 8000
+@pytest.mark.parametrize(("model", "R2"), [(chain.FIVE, 0.99), (chain.TEN, 0.95)])
+def test_a_shipped_model_predicts_its_shipped_test_set(model, R2, tmp_path):
+    shipped = chain.evaluation(chain.preset_run("shipped", tmp_path, model))
     assert shipped.sizes["realization"] == 200
-    assert shipped.attrs["R2"] > 0.99
+    assert shipped.attrs["R2"] > R2
+    assert load_model_config(chain.shipped_model(model)).dataset.alpha_is_label == (
+        model == chain.FIVE
+    )
+
+
+def test_presets_without_ten_components_take_the_shipped_ones():
+    assert chain.preset_run("small", model=chain.TEN).shipped
+    assert not chain.preset_run("smoke", model=chain.TEN).shipped
+    assert not chain.preset_run("small").shipped
 
 
 def test_the_shipped_files_are_those_of_the_checksums():

@@ -1,8 +1,10 @@
 """The chain of one run: dataset, trained network, test realizations with their predictions.
 
-A run is a configuration and a folder: build/<name>/dataset, build/<name>/model and
-build/<name>/evaluation.nc. The preset "shipped" needs no dataset: its model and test set are in
-data_small.
+A run is a configuration and a folder of results: build/<name>/model, build/<name>/evaluation.nc.
+Its dataset is in build/datasets, which all runs and studies share. A preset has a run for each of
+the paper's two models: of five components and α, configs/<preset>.toml, and of ten components,
+configs/<preset>_ten_components.toml or, where there is none, the shipped one. What is shipped needs
+no dataset: models and test sets are in data_small.
 """
 
 from __future__ import annotations
@@ -15,34 +17,51 @@ import xarray as xr
 from tqdm import tqdm
 
 from disorder_landscape.arguments import ArgumentError, require
-from disorder_landscape.config import Config, load_config
+from disorder_landscape.config import Config, DatasetConfig, load_config
 from disorder_landscape.dataset import shards
 from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
 from disorder_landscape.physics.labels import labelled
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 SHIPPED = "shipped"
-SHIPPED_MODEL = REPOSITORY / "data_small" / "models" / "five_components_and_alpha"
-SHIPPED_TEST_SET = REPOSITORY / "data_small" / "five_components_and_alpha_test.nc"
+FIVE, TEN = MODELS = "five_components_and_alpha", "ten_components"
+"""The paper's two models, as they are named where they are shipped."""
+
+
+def dataset_folder(config: DatasetConfig, build: Path) -> Path:
+    """Return the folder of a dataset's shards, whoever asks for it."""
+    return build / "datasets" / config.hash
 
 
 @dataclass(frozen=True)
 class Run:
-    """A configuration and the folder of its results."""
+    """A configuration and the folder of its results.
+
+    Parameters
+    ----------
+    name : str
+        The configuration file's, or the shipped model's.
+    config : Config
+    folder : Path
+        Of everything that is made.
+    shipped : bool
+        Whether model and test set are those in data_small.
+    """
 
     name: str
     config: Config
     folder: Path
+    shipped: bool = False
 
     @property
     def dataset_folder(self) -> Path:
         """Folder of the shards."""
-        return self.folder / "dataset"
+        return dataset_folder(self.config.dataset, self.folder.parent)
 
     @property
     def model_folder(self) -> Path:
         """Folder of the trained network."""
-        return SHIPPED_MODEL if self.name == SHIPPED else self.folder / "model"
+        return shipped_model(self.name) if self.shipped else self.folder / "model"
 
     @property
     def is_trained(self) -> bool:
@@ -60,27 +79,44 @@ def open_run(config: str | Path, build: str | Path = "build") -> Run:
     return Run(Path(config).stem, load_config(config), Path(build) / Path(config).stem)
 
 
-def preset_run(preset: str, build: str | Path = "build") -> Run:
-    """Return the run of configs/<preset>.toml, or the one whose results are shipped.
+def shipped_model(model: str) -> Path:
+    """Return the folder of a shipped network."""
+    return REPOSITORY / "data_small" / "models" / model
+
+
+def shipped_test_set(model: str) -> Path:
+    """Return the file of the test realizations that are shipped with a network."""
+    return REPOSITORY / "data_small" / f"{model}_test.nc"
+
+
+def preset_run(preset: str, build: str | Path = "build", model: str = FIVE) -> Run:
+    """Return a preset's run of one of the paper's two models.
+
+    Parameters
+    ----------
+    preset : str
+        A name in configs/, or "shipped".
+    build : path
+        Where the folder of the run is, or will be.
+    model : {"five_components_and_alpha", "ten_components"}
+        With ten components, presets that have no such configuration take what is shipped.
 
     Raises
     ------
     ArgumentError
         If there is no such preset.
     """
-    if preset == SHIPPED:
-        from disorder_landscape.learning.model import load_model_config
-
-        return Run(SHIPPED, load_model_config(SHIPPED_MODEL), Path(build) / SHIPPED)
-    presets = sorted(path.stem for path in (REPOSITORY / "configs").glob("*.toml"))
+    there = {path.stem for path in (REPOSITORY / "configs").glob("*.toml")}
+    presets = sorted(name for name in there if not name.endswith(TEN))
     must = f"be one of {', '.join([*presets, SHIPPED])}"
-    require(preset in presets, "preset", must, f"it is '{preset}'")
-    return open_run(REPOSITORY / "configs" / f"{preset}.toml", build)
+    require(preset in (*presets, SHIPPED), "preset", must, f"it is '{preset}'")
+    name = preset if model == FIVE else f"{preset}_{model}"
+    if name in there:
+        return open_run(REPOSITORY / "configs" / f"{name}.toml", build)
+    from disorder_landscape.learning.model import load_model_config
 
-
-def preset_config(preset: str) -> Config:
-    """Return the configuration of a preset."""
-    return preset_run(preset).config
+    config = load_model_config(shipped_model(model))
+    return Run(model, config, Path(build) / SHIPPED / model, shipped=True)
 
 
 def generate(run: Run, workers: int) -> None:
@@ -148,10 +184,9 @@ def evaluate(run: Run) -> xr.Dataset:
     return evaluation.assign_attrs(attrs)
 
 
-def evaluation(preset: str, build: str | Path = "build", workers: int = 2) -> xr.Dataset:
-    """Return what `evaluate` gives for a preset, after whatever is missing of its chain."""
-    run = preset_run(preset, build)
-    if run.name != SHIPPED and not run.is_trained:
+def evaluation(run: Run, workers: int = 2) -> xr.Dataset:
+    """Return what `evaluate` gives for a run, after whatever is missing of its chain."""
+    if not run.shipped and not run.is_trained:
         generate(run, workers)
         train(run)
     if run.evaluation_file.exists():
@@ -163,9 +198,9 @@ def evaluation(preset: str, build: str | Path = "build", workers: int = 2) -> xr
 
 def read_test_set(run: Run) -> xr.Dataset:
     """Return the run's test realizations with their conductances."""
-    if run.name == SHIPPED:
-        return read_dataset(SHIPPED_TEST_SET, shards.VARIABLES)
-    from disorder_landscape.learning.training import split
+    if run.shipped:
+        return read_dataset(shipped_test_set(run.name), shards.VARIABLES)
+    from disorder_landscape.learning.examples import split
 
     _, test = split(run.config.dataset.realizations, run.config.training.test_fraction)
     return shards.read_shards(run.config.dataset, run.dataset_folder, test.start)
@@ -196,6 +231,6 @@ def _fingerprint(run: Run) -> str:
         raise ArgumentError("model", must, but) from None
     digest = hashlib.sha256(network)
     digest.update(run.config.dataset.model_dump_json().encode())
-    if run.name == SHIPPED:
-        digest.update(SHIPPED_TEST_SET.read_bytes())
+    if run.shipped:
+        digest.update(shipped_test_set(run.name).read_bytes())
     return digest.hexdigest()

@@ -211,6 +211,31 @@ def predict(
 
 
 @app.command()
+def study(
+    plan: Annotated[Path, typer.Argument(help="TOML file of the study, in configs/studies.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Folder of the table.")] = Path(
+        "claims"
+    ),
+    build: Build = Path("build"),
+    workers: Workers = 2,
+) -> None:
+    """Carry a study out: every training that its table lacks; an interrupted one goes on.
+
+    The table is claims/<name of the study>.csv, one row per training.
+
+    Example: landscape study configs/studies/learning_curves.toml
+    """
+    from disorder_landscape.studies.plan import load_study
+    from disorder_landscape.studies.runner import run_study
+
+    planned = load_study(plan)
+    table = output / f"{planned.name}.csv"
+    with resumable():
+        run_study(planned, table, build, workers)
+    print(f"wrote {table}: {len(planned.runs)} trainings")
+
+
+@app.command()
 def bench(
     repeats: Annotated[int, typer.Option(min=1, help="Measurements, of which the median.")] = 5,
     output: Annotated[Path, typer.Option(help="Folder of the table and the plot.")] = Path(

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import tomllib
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, TypeVar
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
@@ -20,14 +21,27 @@ from disorder_landscape.physics.parameters import (
     SITES,
     TEMPERATURE,
     FloatArray,
+    Nanowire,
 )
 
 Positive = Annotated[int, Field(ge=1)]
 LearningRate = Annotated[float, Field(gt=0, le=1)]
 
 
+Model = TypeVar("Model", bound=BaseModel)
+
+
 class _Section(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class WireConfig(_Section):
+    """What the paper keeps fixed of the wires, where a study wants it otherwise."""
+
+    barrier: Annotated[float, Field(ge=-1e3, le=1e3)] = Nanowire.barrier[0]
+    """V_Barrier on the first and on the last site, in meV."""
+    lead_mu: Annotated[float, Field(ge=-1e3, le=1e3)] = Nanowire.lead_mu
+    """Chemical potential of the leads in meV."""
 
 
 class DatasetConfig(_Section):
@@ -56,6 +70,7 @@ class DatasetConfig(_Section):
     """In K."""
     energy_spacing: Annotated[float, Field(gt=0, le=0.1)] | None = None
     """Of a grid of energies to average over, in meV, as the paper does; none averages exactly."""
+    wire: WireConfig = WireConfig()
     seed: Annotated[int, Field(ge=0)] = 0
     shard_size: Positive = 50
     """Realizations per file."""
@@ -89,13 +104,16 @@ class DatasetConfig(_Section):
     @property
     def hash(self) -> str:
         """Hash of everything that decides the content of a realization (not how many there are)."""
-        content = self.model_dump_json(exclude={"realizations"})
+        papers = {"wire"} if self.wire == WireConfig() else set()
+        content = self.model_dump_json(exclude={"realizations"} | papers)
         return hashlib.sha256(content.encode()).hexdigest()[:16]
 
 
 class NetworkConfig(_Section):
-    """The size of the paper's network."""
+    """Which network, and its size."""
 
+    architecture: Literal["convolutional", "residual", "recurrent"] = "convolutional"
+    """The paper's network, a challenger, or the one that the paper tried first (S-II.2)."""
     width_fraction: Annotated[float, Field(gt=0, le=4)] = 1.0
     """Multiplies the filters of every convolution (Fig. S2); the paper's network is 1.0."""
 
@@ -103,10 +121,14 @@ class NetworkConfig(_Section):
 class TrainingConfig(_Section):
     """How the network is trained (S-II.2)."""
 
+    realizations: Positive | None = None
+    """How many of the training realizations are used; none takes all."""
     epochs: tuple[Positive, ...] = (15, 15, 10, 5)
     """Epochs of each set; the learning rate is divided by 10 from set to set."""
+    schedule: Literal["sets", "cosine"] = "sets"
+    """"cosine" lets the learning rate fall along a cosine instead, step by step, to zero."""
     learning_rate: LearningRate = 1e-4
-    """Learning rate of the first set."""
+    """Learning rate of the first set, or the largest of the cosine."""
     batch_size: Positive = 32
     test_fraction: Annotated[float, Field(gt=0, lt=1)] = 0.1
     """The last realizations are the test set."""
@@ -115,6 +137,8 @@ class TrainingConfig(_Section):
     """Feed asinh(G/s), standardised per pixel, instead of G."""
     mirror: bool = False
     """Train on mirrored wires too, and average predictions over the mirror."""
+    noise: Annotated[float, Field(ge=0, le=10)] = 0.0
+    """Standard deviation in e²/h of Gaussian errors, drawn anew at every step."""
     seed: Annotated[int, Field(ge=0)] = 0
 
 
@@ -150,21 +174,29 @@ class Config(_Section):
 
 
 def load_config(path: str | Path) -> Config:
-    """Read and check a TOML file.
+    """Read and check a run's TOML file.
 
     Raises
     ------
     ArgumentError
         If the file cannot be read, is not TOML, or has an unknown, missing or invalid key.
     """
+    return checked(Config, path, "config")
+
+
+def checked(
+    model: type[Model], path: str | Path, name: str, content: Mapping[str, object] | None = None
+) -> Model:
+    """Read a TOML file, or take its content as given, and check it against a model.
+
+    Raises
+    ------
+    ArgumentError
+        Of the given argument name, if the file cannot be read, is not TOML, or has an unknown,
+        missing or invalid key.
+    """
     try:
-        with open(path, "rb") as file:
-            return Config.model_validate(tomllib.load(file))
-    except OSError as error:
-        but = f"'{path}' cannot be read ({error.strerror})"
-        raise ArgumentError("config", "be a readable TOML file", but) from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise ArgumentError("config", "be a TOML file", f"'{path}' is not: {error}") from None
+        return model.model_validate(_read_toml(path, name) if content is None else content)
     except ValidationError as error:
         first = error.errors()[0]
         key = ".".join(str(part) for part in first["loc"]) or "the file"
@@ -173,4 +205,15 @@ def load_config(path: str | Path) -> Config:
             "missing": "it lacks the key {key}",
         }.get(first["type"], "{key} is wrong: {message}")
         but = said.format(key=key, message=first["msg"].removeprefix("Value error, "))
-        raise ArgumentError("config", f"describe a run ('{path}')", but) from None
+        raise ArgumentError(name, f"describe a run ('{path}')", but) from None
+
+
+def _read_toml(path: str | Path, name: str) -> dict[str, object]:
+    try:
+        with open(path, "rb") as file:
+            return tomllib.load(file)
+    except OSError as error:
+        but = f"'{path}' cannot be read ({error.strerror})"
+        raise ArgumentError(name, "be a readable TOML file", but) from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise ArgumentError(name, "be a TOML file", f"'{path}' is not: {error}") from None

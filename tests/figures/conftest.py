@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from disorder_landscape.chain import preset_config
+from disorder_landscape.chain import preset_run
 from disorder_landscape.config import Config
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.physics.disorder import potential_from_components
@@ -21,7 +21,7 @@ WIRES = 6
 
 @pytest.fixture(scope="session")
 def config() -> Config:
-    return preset_config("smoke")
+    return preset_run("smoke").config
 
 
 @pytest.fixture(scope="session")

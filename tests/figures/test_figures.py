@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from importlib import import_module
 from itertools import combinations
 
@@ -16,27 +17,33 @@ from scipy.constants import physical_constants
 import disorder_landscape as dl
 from command import Request
 from disorder_landscape.arguments import ArgumentError
-from disorder_landscape.chain import preset_config
+from disorder_landscape.chain import preset_run
 from disorder_landscape.physics.disorder import cosine_components
 from disorder_landscape.physics.finite_temperature import TOLERANCE
 from plotting import COLUMN, FULL_WIDTH, paper_style
 
 SCRIPTS = {
     "figure_1": "figure_1_network",
+    "figure_2": "figure_2_scaling",
     "figure_3": "figure_3_conductance_bias",
     "figure_4": "figure_4_disorder",
     "figure_5": "figure_5_alpha",
     "figure_S1": "figure_S1_device",
+    "figure_S3": "figure_S3_components",
+    "figure_S4": "figure_S4_ten_components",
     "figure_S5": "figure_S5_conductance_mu",
+    "figure_S6": "figure_S6_conductance_mu_ten",
     "figure_S7": "figure_S7_visibility",
+    "figure_S8": "figure_S8_visibility_ten",
     "figure_S9": "figure_S9_pristine",
+    "figure_S11": "figure_S11_learning_curves",
 }
 CONDUCTANCES = ("G_LL", "G_RR", "G_LR", "G_RL")
 
 
 @pytest.fixture(scope="module")
-def request_(config, evaluation_file) -> Request:
-    return Request("smoke", config, evaluation_file)
+def request_(evaluation_file) -> Request:
+    return Request(preset_run("smoke"), evaluation_file)
 
 
 @pytest.fixture(scope="module")
@@ -143,7 +150,8 @@ def test_bad_input_is_one_sentence_and_writes_nothing(options, said, tmp_path, c
 
 def test_a_realization_that_is_not_there_is_refused(config, evaluation_file):
     figures = config.figures.model_copy(update={"realizations": (0, 99)})
-    beyond = Request("smoke", config.model_copy(update={"figures": figures}), evaluation_file)
+    run = replace(preset_run("smoke"), config=config.model_copy(update={"figures": figures}))
+    beyond = Request(run, evaluation_file)
     with pytest.raises(ArgumentError, match="realizations must"):
         import_module(SCRIPTS["figure_4"]).data(beyond)
 
@@ -251,7 +259,7 @@ def test_alpha_is_drawn_as_predicted_with_its_error(drawn, evaluation):
 
 def test_the_network_is_the_papers():
     """Layers, kernels, filters and pools of Fig. 1 and S-II.2, read from the Keras model."""
-    data = import_module(SCRIPTS["figure_1"]).data(Request("paper", preset_config("paper")))
+    data = import_module(SCRIPTS["figure_1"]).data(Request(preset_run("paper")))
     kind = data["kind"].to_numpy()
     convolutions = np.char.startswith(kind.astype(str), "Conv")
     kernels = [[int(n) for n in row if n] for row in data["kernel"].to_numpy()[convolutions]]
@@ -309,3 +317,37 @@ def test_the_pristine_conductances_are_simulated_and_mirror_symmetric(drawn, con
             np.testing.assert_allclose(
                 data[f"{one}_{letter}"], data[f"{other}_{letter}"], atol=2 * TOLERANCE
             )
+
+
+def test_the_stated_numbers_of_components(drawn):
+    """S-II.3: 54 for F = 0.95 at ℓ = 3, 29 and 33 for F = 0.95 and 0.97 at ℓ = 7."""
+    required = drawn("figure_S3")["components"].sel(sites=300)
+    stated = {(3, 0.95): 54, (7, 0.95): 29, (7, 0.97): 33}
+    for (length, fidelity), n in stated.items():
+        assert int(required.sel(correlation_length=length, fidelity=fidelity)) == n
+
+
+def test_longer_and_rougher_wires_need_more_components(drawn):
+    required = drawn("figure_S3")["components"]
+    assert (required.diff("sites") > 0).all()
+    assert (required.diff("fidelity") > 0).all()
+    assert (required.diff("correlation_length") <= 0).all()
+
+
+def test_ten_components_are_drawn_like_five(drawn):
+    """Figures S4, S6 and S8 show what Figures 3, 4, S5 and S7 show, of the other model's wires."""
+    ten = drawn("figure_S4")
+    for figure in ("figure_3", "figure_4"):
+        for name, values in drawn(figure).data_vars.items():
+            np.testing.assert_array_equal(ten[name], values)
+    assert drawn("figure_S6").identical(drawn("figure_S5"))
+    assert drawn("figure_S8").identical(drawn("figure_S7"))
+
+
+def test_the_scaling_goes_through_its_points(drawn):
+    """The least-squares line on logarithmic axes, by its normal equations."""
+    data = drawn("figure_2")
+    x, y = np.log(data["components"]), np.log(data["realizations"]).mean("seed")
+    slope = ((x - x.mean()) * (y - y.mean())).sum() / ((x - x.mean()) ** 2).sum()
+    assert data.attrs["exponent"] == pytest.approx(float(slope))
+    assert data.attrs["prefactor"] == pytest.approx(float(np.exp(y.mean() - slope * x.mean())))

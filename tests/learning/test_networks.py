@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from disorder_landscape.arguments import ArgumentError
@@ -93,3 +94,30 @@ def test_other_grids(grid, before, after):
 def test_a_grid_too_small_for_the_poolings_is_refused(grid, axis):
     with pytest.raises(ArgumentError, match=rf"grid must have at least \d points of {axis}"):
         build_network((*grid, 4), 6)
+
+
+@pytest.mark.parametrize("architecture", ["residual", "recurrent"])
+@pytest.mark.parametrize("grid", [(8, 8, 5), (15, 15, 5), (9, 12, 3)])
+def test_challengers_take_any_grid_and_learn(architecture, grid):
+    network = build_network((*grid, 4), 3, 0.02, 1e-2, architecture=architecture)
+    rng = np.random.default_rng(0)
+    x = rng.normal(size=(16, *grid, 4)).astype(np.float32)
+    y = x[:, 1, 2, :, :3].mean(axis=1)
+    losses = [network.train_on_batch(x, y, return_dict=True)["loss"] for _ in range(30)]
+    assert losses[-1] < 0.5 * losses[0]
+
+
+def test_the_residual_networks_widths():
+    network = build_network((15, 15, 5, 4), 6, 0.0625, architecture="residual")
+    kernels = [layer.kernel_size for layer in network.layers if hasattr(layer, "filters")]
+    assert kernels.count((3, 3)) == 1 + 3 * 2 * 2  # the stem, two in each of two blocks a set
+    filters = {layer.filters for layer in network.layers if hasattr(layer, "filters")}
+    assert filters == {16, 32, 64}
+
+
+def test_the_order_of_measurements_matters_to_the_recurrent_network():
+    """Each measurement has its own place in K, though its weights are shared."""
+    network = build_network((8, 8, 5, 4), 3, 0.02, architecture="recurrent")
+    x = np.random.default_rng(0).normal(size=(2, 8, 8, 5, 4)).astype(np.float32)
+    turned = np.ascontiguousarray(x[:, ::-1])
+    assert abs(network.predict_on_batch(x) - network.predict_on_batch(turned)).max() > 1e-4

@@ -11,8 +11,10 @@ import pytest
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.learning import training
 from disorder_landscape.learning.curves import read_curves
+from disorder_landscape.learning.examples import first, split
 from disorder_landscape.learning.model import load_model
-from disorder_landscape.learning.training import schedule, split, train
+from disorder_landscape.learning.schedule import learning_rate, numbered_epochs
+from disorder_landscape.learning.training import train
 from synthetic import synthetic_dataset, tiny_config
 
 SHORT = tiny_config(realizations=40, width_fraction=0.01, epochs=(2, 1))
@@ -127,10 +129,22 @@ def test_a_dataset_of_another_config_is_refused(tmp_path, config, dataset):
 
 def test_learning_rate_is_divided_by_ten_from_set_to_set():
     training_config = tiny_config(epochs=(2, 1, 1), learning_rate=1e-4).training
-    epochs, sets, rates = zip(*schedule(training_config), strict=True)
+    epochs, sets = zip(*numbered_epochs(training_config), strict=True)
     assert epochs == (1, 2, 3, 4)
     assert sets == (1, 1, 2, 3)
+    rates = [learning_rate(training_config, epoch, share=0.9) for epoch in epochs]
     assert rates == pytest.approx((1e-4, 1e-4, 1e-5, 1e-6))
+
+
+def test_the_cosine_rises_over_one_epoch_and_falls_to_zero():
+    config = tiny_config(epochs=(5,), learning_rate=1e-3, schedule="cosine").training
+    done = np.linspace(0, 5, 51)[:-1]
+    rates = [learning_rate(config, 1 + int(x), x - int(x)) for x in done]
+    assert np.argmax(rates) == 10
+    assert max(rates) == pytest.approx(1e-3)
+    assert rates[30] == pytest.approx(0.5e-3)  # half of the way from 1 to 5
+    assert rates[0] > 0
+    assert rates[-1] < 2e-6
 
 
 def test_the_last_tenth_is_for_testing():
@@ -141,3 +155,19 @@ def test_the_last_tenth_is_for_testing():
 def test_a_dataset_too_small_to_split_is_refused(realizations, fraction):
     with pytest.raises(ArgumentError, match="dataset must leave two realizations"):
         split(realizations, fraction)
+
+
+def test_only_the_first_training_realizations_are_used_where_so_many_are_asked_for(tmp_path):
+    """What is beyond them may be anything, but for the test set."""
+    config = tiny_config(realizations=40, width_fraction=0.01, epochs=(1,))
+    used = config.training.model_copy(update={"realizations": 20})
+    config = config.model_copy(update={"training": used})
+    dataset = synthetic_dataset(config)
+    changed = dataset.copy(deep=True)
+    changed["G_LL"][20:36] += 1.0
+    one = train(dataset, config, tmp_path / "one", progress=False)
+    assert train(changed, config, tmp_path / "other", progress=False) == one
+    assert first(slice(0, 36), 20) == slice(0, 20)
+    assert first(slice(0, 36), None) == slice(0, 36)
+    with pytest.raises(ArgumentError, match="at most 36"):
+        first(slice(0, 36), 37)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from disorder_landscape.config import DatasetConfig
+from disorder_landscape.config import DatasetConfig, WireConfig
 from disorder_landscape.physics.disorder import disorder_realization
 from disorder_landscape.physics.labels import CONDUCTANCES, labelled
 from disorder_landscape.physics.parameters import FloatArray, Nanowire
@@ -22,11 +22,18 @@ class Realization:
     components: FloatArray
     alpha: float
     potential: FloatArray
+    fixed: WireConfig
+    """The wire's other parameters."""
 
     @property
     def wire(self) -> Nanowire:
-        """The wire with this disorder and the paper's other parameters."""
-        return Nanowire(self.potential, alpha=self.alpha)
+        """The wire with this disorder."""
+        return Nanowire(
+            self.potential,
+            alpha=self.alpha,
+            barrier=(self.fixed.barrier, self.fixed.barrier),
+            lead_mu=self.fixed.lead_mu,
+        )
 
 
 def realization(config: DatasetConfig, index: int) -> Realization:
@@ -36,7 +43,7 @@ def realization(config: DatasetConfig, index: int) -> Realization:
     components, potential = disorder_realization(
         rng, config.components, config.sites, config.correlation_length, config.amplitude
     )
-    return Realization(components, alpha, potential)
+    return Realization(components, alpha, potential, config.wire)
 
 
 def simulate(config: DatasetConfig, indices: Iterable[int]) -> xr.Dataset:

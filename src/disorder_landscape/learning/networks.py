@@ -1,10 +1,11 @@
-"""The paper's convolutional network, layer for layer (Fig. 1, S-II.2)."""
+"""The paper's convolutional network, layer for layer (Fig. 1, S-II.2), and where to find others."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from disorder_landscape.arguments import require
+from disorder_landscape.learning import challengers
 from disorder_landscape.learning.backend import import_keras
 
 FILTERS = (256, 512, 1028)
@@ -28,13 +29,9 @@ def build_network(
     width_fraction: float = 1.0,
     learning_rate: float = 1e-4,
     precision: str = "float32",
+    architecture: str = "convolutional",
 ) -> Any:
     """Return the compiled network: Adam and the mean squared error of standard-scaled labels.
-
-    Three sets of convolutions (3D, 3D, 2D), each followed by batch normalization and max pooling,
-    then dense layers. All convolutions pad to the same size and end in a ReLU, as do the inner
-    dense layers. What V_bias has left after two poolings (one point for the paper's five) is
-    folded into the channels when the third set's 2D convolutions over (μ, B) begin.
 
     Parameters
     ----------
@@ -48,6 +45,8 @@ def build_network(
         Of Adam.
     precision : str
         A Keras dtype policy: "float32" or "mixed_bfloat16". The output layer stays in float32.
+    architecture : {"convolutional", "residual", "recurrent"}
+        The paper's network, or one of `challengers`.
 
     Returns
     -------
@@ -59,16 +58,36 @@ def build_network(
     ArgumentError
         If the grid is too small for three poolings.
     """
-    for (axis, smallest), points in zip(SMALLEST_GRID.items(), input_shape, strict=False):
+    keras = import_keras()
+    filters = [max(1, round(width_fraction * f)) for f in FILTERS]
+    inputs = keras.Input(input_shape, name="conductance")
+    layers_of = {
+        "convolutional": _convolutional,
+        "residual": challengers.residual,
+        "recurrent": challengers.recurrent,
+    }[architecture]
+    features = layers_of(inputs, filters, precision)
+    labels = keras.layers.Dense(outputs, dtype="float32", name="labels")(features)
+    network = keras.Model(inputs, labels, name="disorder_landscape")
+    network.compile(keras.optimizers.Adam(learning_rate), loss="mean_squared_error")
+    return network
+
+
+def _convolutional(inputs: Any, filters: list[int], precision: str) -> Any:
+    """Return the features of the paper's network.
+
+    Three sets of convolutions (3D, 3D, 2D), each followed by batch normalization and max pooling,
+    then dense layers. All convolutions pad to the same size and end in a ReLU, as do the inner
+    dense layers. What V_bias has left after two poolings (one point for the paper's five) is
+    folded into the channels when the third set's 2D convolutions over (μ, B) begin.
+    """
+    for (axis, smallest), points in zip(SMALLEST_GRID.items(), inputs.shape[1:], strict=False):
         must = f"have at least {smallest} points of {axis}, for the network's poolings"
         require(points >= smallest, "grid", must, f"it has {points}")
 
-    keras = import_keras()
-    layers = keras.layers
-    filters = [max(1, round(width_fraction * f)) for f in FILTERS]
+    layers = import_keras().layers
     same = {"padding": "same", "activation": "relu", "dtype": precision}
-
-    x = inputs = keras.Input(input_shape, name="conductance")
+    x = inputs
     for i, kernels in enumerate(KERNELS_3D):
         for j, kernel in enumerate(kernels):
             x = layers.Conv3D(filters[i], kernel, name=f"set{i + 1}_conv{j + 1}", **same)(x)
@@ -83,7 +102,4 @@ def build_network(
     x = layers.Flatten(dtype=precision, name="flatten")(x)
     for j, nodes in enumerate(DENSE):
         x = layers.Dense(nodes, activation="relu", dtype=precision, name=f"dense{j + 1}")(x)
-    outputs_layer = layers.Dense(outputs, dtype="float32", name="labels")
-    network = keras.Model(inputs, outputs_layer(x), name="disorder_landscape")
-    network.compile(keras.optimizers.Adam(learning_rate), loss="mean_squared_error")
-    return network
+    return x

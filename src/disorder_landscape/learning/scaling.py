@@ -23,6 +23,10 @@ AXES = ("mu", "B", "bias")
 """The measurement configurations K, in the order of the network's axes."""
 COMPRESSION: ConductanceArray = np.array([0.2, 0.2, 0.003, 0.003], dtype=np.float32)
 """Scale s in e²/h of asinh(G/s) per channel: typical local and nonlocal conductances."""
+NOISE_FLOOR = 0.001
+"""Error of a measured conductance in e²/h, the least that the paper's main text reckons with."""
+ROWS_AT_A_TIME = 2000
+"""Realizations that are compressed at a time, for memory's sake."""
 
 
 def conductance_array(G: xr.Dataset) -> ConductanceArray:
@@ -120,27 +124,32 @@ class InputScaler:
     """asinh(G/s), then standard scaling per pixel over the training set.
 
     Conductances reach from 10⁻⁴ to 2 e²/h; asinh is linear below s and logarithmic above, which
-    shows the network the small ones too.
+    shows the network the small ones too. Some pixels hardly vary over the training set: nonlocal
+    ones at B = 0 by 10⁻¹⁰ e²/h. Errors of measurement would be all that the network sees of them,
+    so that the deviation is taken as if each conductance had the experiment's.
 
     Parameters
     ----------
     mean, std : array of float32, shape (mu, B, bias, channel)
-        Of asinh(G/s).
+        Of asinh(G/s), G with errors of NOISE_FLOOR.
     """
 
     mean: ConductanceArray
     std: ConductanceArray
 
     @classmethod
-    def fit(cls, X: ConductanceArray) -> Self:
-        """Return the scaler of a training set, X of shape (realization, mu, B, bias, channel)."""
-        compressed = np.arcsinh(X / COMPRESSION)
-        fitted = StandardScaler().fit(compressed.reshape(len(X), -1))
-        shape = X.shape[1:]
-        return cls(
-            fitted.mean_.astype(np.float32).reshape(shape),
-            fitted.scale_.astype(np.float32).reshape(shape),
+    def fit(cls, *parts: ConductanceArray) -> Self:
+        """Return the scaler of a training set, in parts (realization, mu, B, bias, channel)."""
+        fitted = StandardScaler()
+        for X in parts:
+            for start in range(0, len(X), ROWS_AT_A_TIME):
+                compressed = np.arcsinh(X[start : start + ROWS_AT_A_TIME] / COMPRESSION)
+                fitted.partial_fit(compressed.reshape(len(compressed), -1))
+        mean, variance = (
+            values.reshape(parts[0].shape[1:]) for values in (fitted.mean_, fitted.var_)
         )
+        std = np.sqrt(variance + (NOISE_FLOOR / COMPRESSION) ** 2)
+        return cls(mean.astype(np.float32), std.astype(np.float32))
 
     def scale(self, X: ConductanceArray) -> ConductanceArray:
         """Return the network's input, shape (realization, mu, B, bias, channel)."""

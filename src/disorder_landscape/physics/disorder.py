@@ -123,16 +123,39 @@ def disorder_realization(
     return labels, potential_from_components(labels, sites, kappa * c[0] / np.sqrt(sites))
 
 
-def components_required(
-    fidelity: float, correlation_length: float, sites: int, samples: int = 1000, seed: int = 0
-) -> int:
-    """Return how many components give the mean fidelity F of S-II.3 for untruncated disorder.
+def fidelity_by_components(
+    correlation_length: float, sites: int, samples: int = 1000, seed: int = 0
+) -> FloatArray:
+    """Return the mean fidelity F of S-II.3 of untruncated disorder cut to 1, 2, … N components.
 
     F = V·V_pred / √((V·V)(V_pred·V_pred)); with V_pred the truncation of V, F² is the share of
     V·V in the components kept (the DC component counts as one of them).
+
+    Parameters
+    ----------
+    correlation_length : float
+        ℓ in sites.
+    sites : int
+        Length of the wire.
+    samples : int
+        Potentials to average over.
+    seed : int
+
+    Returns
+    -------
+    array, shape (site,)
+        Increasing, the last is 1.
     """
     rng = np.random.default_rng(seed)
     noise = np.array([smooth_noise(rng, sites, correlation_length) for _ in range(samples)])
     power = cosine_components(noise) ** 2
     share = np.cumsum(power, axis=1) / power.sum(axis=1, keepdims=True)
-    return int(np.argmax(np.sqrt(share).mean(axis=0) >= fidelity)) + 1
+    return np.asarray(np.sqrt(share).mean(axis=0))
+
+
+def components_required(
+    fidelity: float, correlation_length: float, sites: int, samples: int = 1000, seed: int = 0
+) -> int:
+    """Return how many components give a mean fidelity, as `fidelity_by_components` has it."""
+    reached = fidelity_by_components(correlation_length, sites, samples, seed)
+    return int(np.argmax(reached >= fidelity)) + 1

@@ -1,0 +1,103 @@
+"""Networks to compare with the paper's: the one it tried first, and one that it does not try."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from disorder_landscape.learning.backend import import_keras
+
+BLOCKS = 2
+"""Residual blocks in each of the three sets."""
+NODES = 500
+"""Nodes of the dense layer before the output, as in the paper's network."""
+
+
+def residual(inputs: Any, filters: list[int], precision: str) -> Any:
+    """Return the features of a residual network over the (μ, B) plane.
+
+    The conductances of all V_bias are channels of one image. Three sets of residual blocks (He et
+    al., CVPR 2016: two 3×3 convolutions each, added to what goes in), the later ones at half and
+    at a quarter of the resolution, then a dense layer that sees every point of what is left.
+
+    Parameters
+    ----------
+    inputs : Keras tensor, shape (realization, mu, B, bias, channel)
+    filters : three int
+        Of the convolutions of each set.
+    precision : str
+        A Keras dtype policy.
+
+    Returns
+    -------
+    Keras tensor, shape (realization, feature)
+    """
+    layers = import_keras().layers
+    mu, B, bias, channels = inputs.shape[1:]
+    x = layers.Reshape((mu, B, bias * channels), dtype=precision)(inputs)
+    x = _convolution(x, filters[0], precision)
+    for i, count in enumerate(filters):
+        for j in range(BLOCKS):
+            stride = 2 if i > 0 and j == 0 else 1
+            inner = _convolution(x, count, precision, stride)
+            inner = layers.Conv2D(
+                count,
+                3,
+                padding="same",
+                use_bias=False,
+                kernel_initializer="he_normal",
+                dtype=precision,
+            )(inner)
+            inner = layers.BatchNormalization(dtype=precision)(inner)
+            if stride > 1:
+                x = layers.AveragePooling2D(stride, padding="same", dtype=precision)(x)
+            if x.shape[-1] != count:
+                x = layers.Conv2D(count, 1, use_bias=False, dtype=precision)(x)
+            x = layers.Activation("relu", dtype=precision)(layers.Add(dtype=precision)([x, inner]))
+    x = layers.Flatten(dtype=precision)(x)
+    return layers.Dense(NODES, activation="relu", dtype=precision)(x)
+
+
+def _convolution(x: Any, filters: int, precision: str, stride: int = 1) -> Any:
+    layers = import_keras().layers
+    x = layers.Conv2D(
+        filters,
+        3,
+        stride,
+        padding="same",
+        use_bias=False,
+        kernel_initializer="he_normal",
+        dtype=precision,
+    )(x)
+    x = layers.BatchNormalization(dtype=precision)(x)
+    return layers.Activation("relu", dtype=precision)(x)
+
+
+def recurrent(inputs: Any, filters: list[int], precision: str) -> Any:
+    """Return the features of a recurrent network over the measurements.
+
+    Each step sees one (μ, B) and its conductances at all V_bias ("each input step consists of a
+    measurement operation", a row of X and of K). K is the same for all wires, so that it enters as
+    a bias of each step, which is learnt. Two layers of long short-term memory, of as many units as
+    the first set of convolutions has filters, then a dense layer.
+
+    Parameters
+    ----------
+    inputs : Keras tensor, shape (realization, mu, B, bias, channel)
+    filters : list of int
+        The first is the number of units.
+    precision : str
+        A Keras dtype policy.
+
+    Returns
+    -------
+    Keras tensor, shape (realization, feature)
+    """
+    layers = import_keras().layers
+    mu, B, bias, channels = inputs.shape[1:]
+    x = layers.Reshape((mu * B, bias * channels), dtype=precision)(inputs)
+    x = layers.EinsumDense(
+        "rsx,xf->rsf", (mu * B, filters[0]), bias_axes="sf", dtype=precision, name="measurement"
+    )(x)
+    x = layers.LSTM(filters[0], return_sequences=True, dtype=precision)(x)
+    x = layers.LSTM(filters[0], dtype=precision)(x)
+    return layers.Dense(NODES, activation="relu", dtype=precision)(x)

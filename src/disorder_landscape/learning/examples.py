@@ -1,0 +1,99 @@
+"""What a training shows the network: wires, their mirror images, errors of measurement."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from disorder_landscape.arguments import require
+from disorder_landscape.config import TrainingConfig
+from disorder_landscape.learning.mirror import mirrored_conductance, mirrored_labels
+from disorder_landscape.learning.scaling import ConductanceArray, InputScaler, LabelScaler
+from disorder_landscape.physics.parameters import FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Examples:
+    """The training realizations, and with `training.mirror` their mirror images behind them.
+
+    The images are made when they are asked for: a large dataset is in memory once.
+
+    Parameters
+    ----------
+    X : array, shape (realization, mu, B, bias, channel)
+        Conductances in e²/h.
+    Y : array, shape (realization, label)
+        Labels in meV and meV nm.
+    components : int
+        How many of the labels are disorder components.
+    training : TrainingConfig
+        Says whether to mirror, and the noise.
+    """
+
+    X: ConductanceArray
+    Y: FloatArray
+    components: int
+    training: TrainingConfig
+
+    def __len__(self) -> int:
+        """Return how many examples an epoch shows."""
+        return len(self.X) * (2 if self.training.mirror else 1)
+
+    def fit_labels(self, names: tuple[str, ...]) -> LabelScaler:
+        """Return the scaler of all examples' labels."""
+        return LabelScaler.fit(names, self.labels(np.arange(len(self))))
+
+    def fit_inputs(self) -> InputScaler:
+        """Return the scaler of all examples' conductances."""
+        parts = [self.X, mirrored_conductance(self.X)] if self.training.mirror else [self.X]
+        return InputScaler.fit(*parts)
+
+    def labels(self, which: NDArray[np.intp]) -> FloatArray:
+        """Return the labels of these examples, shape (example, label)."""
+        Y = self.Y[which % len(self.X)]
+        images = mirrored_labels(Y, self.components)
+        return np.where((which < len(self.X))[:, None], Y, images)
+
+    def conductances(
+        self, which: NDArray[np.intp], rng: np.random.Generator | None = None
+    ) -> ConductanceArray:
+        """Return the conductances of these examples, with errors drawn from rng if it is given."""
+        X = self.X[which % len(self.X)]
+        images = which >= len(self.X)
+        X[images] = mirrored_conductance(X[images])
+        if rng is not None and self.training.noise > 0:
+            X += self.training.noise * rng.standard_normal(X.shape, dtype=np.float32)
+        return X
+
+
+def split(realizations: int, test_fraction: float) -> tuple[slice, slice]:
+    """Return which realizations train and which, the last ones, test (S-II.2: 90 % and 10 %).
+
+    Raises
+    ------
+    ArgumentError
+        If fewer than two are left on a side: R² needs two.
+    """
+    test = round(test_fraction * realizations)
+    must = "leave two realizations at least for training and for testing"
+    but = f"its {realizations} are split into {realizations - test} and {test}"
+    require(min(test, realizations - test) >= 2, "dataset", must, but)
+    return slice(0, realizations - test), slice(realizations - test, realizations)
+
+
+def first(training: slice, realizations: int | None) -> slice:
+    """Return the first training realizations, or all of them where no number is asked for.
+
+    Raises
+    ------
+    ArgumentError
+        If there are fewer.
+    """
+    if realizations is None:
+        return training
+    there = training.stop - training.start
+    must = f"be at most {there}, the number of training realizations"
+    require(realizations <= there, "training.realizations", must, f"it is {realizations}")
+    return slice(training.start, training.start + realizations)

@@ -1,0 +1,87 @@
+"""A study's plan: what it expands to, and what it refuses."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from disorder_landscape.arguments import ArgumentError
+from disorder_landscape.chain import REPOSITORY
+from disorder_landscape.studies.plan import PlannedRun, load_study
+
+PLAN = """
+title = "R² over something"
+[base.dataset]
+realizations = 100
+[base.training]
+mirror = true
+[[runs]]
+name = "ours"
+[runs.grid]
+"training.seed" = [0, 1]
+"network.width_fraction" = [0.1, 0.2, 0.3]
+[[runs]]
+name = "the paper's"
+[runs.set.training]
+mirror = false
+"""
+
+
+@pytest.fixture
+def plan(tmp_path) -> Path:
+    path = tmp_path / "something.toml"
+    path.write_text(PLAN)
+    return path
+
+
+def test_every_combination_of_a_grid_is_a_run(plan):
+    study = load_study(plan)
+    assert study.name == "something"
+    settings = [(run.config.training.seed, run.config.network.width_fraction) for run in study.runs]
+    assert settings[:6] == [(s, w) for s in (0, 1) for w in (0.1, 0.2, 0.3)]
+    assert [run.name for run in study.runs] == ["ours"] * 6 + ["the paper's"]
+    assert [run.config.training.mirror for run in study.runs] == [True] * 6 + [False]
+    assert all(run.config.dataset.realizations == 100 for run in study.runs)
+
+
+def test_keys_tell_runs_apart_by_settings_and_not_by_name(plan):
+    study = load_study(plan)
+    keys = {run.key for run in study.runs}
+    assert len(keys) == 7
+    assert PlannedRun("another name", study.runs[0].config).key == study.runs[0].key
+
+
+def test_how_figures_are_drawn_does_not_matter_to_a_key(plan):
+    run = load_study(plan).runs[0]
+    figures = run.config.figures.model_copy(update={"mu_points": 5})
+    other = run.config.model_copy(update={"figures": figures})
+    assert PlannedRun(run.name, other).key == run.key
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("mirror = true", "mirrors = true", "unknown key training.mirrors"),
+        ("realizations = 100", "realizations = 0", "dataset.realizations is wrong"),
+        ('"training.seed" = [0, 1]', '"training.seed" = [0, 0]', "must have different runs"),
+        ("[base.training]", "[basis.training]", "unknown key basis"),
+        ("title =", "title", "TOML"),
+    ],
+)
+def test_a_plan_that_makes_no_sense_is_refused(plan, old, new, said):
+    plan.write_text(PLAN.replace(old, new))
+    with pytest.raises(ArgumentError, match=said):
+        load_study(plan)
+
+
+def test_a_plan_that_is_not_there_is_refused(tmp_path):
+    with pytest.raises(ArgumentError, match="study must be a readable TOML file"):
+        load_study(tmp_path / "nonesuch.toml")
+
+
+@pytest.mark.parametrize(
+    "path", sorted((REPOSITORY / "configs" / "studies").glob("*.toml")), ids=lambda path: path.stem
+)
+def test_the_studies_of_this_repository_can_be_read(path):
+    assert load_study(path).runs
