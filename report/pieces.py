@@ -77,7 +77,11 @@ def _origin(finding: Finding, outcome: Outcome) -> tuple[str, ...]:
     source = outcome.source
     made = outcome.made
     value = "" if outcome.value is None else number(outcome.value)
-    key = (source.key or source.column) if isinstance(source, Stored) else finding.claim.id
+    key = (
+        (source.key or source.column or source.derive)
+        if isinstance(source, Stored)
+        else finding.claim.id
+    )
     file = source.file if isinstance(source, Stored) else MEASURED_FILE
     machine = str(made.get("machine", ""))
     command = f"`{made['command']}`"

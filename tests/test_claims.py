@@ -6,23 +6,26 @@ import hashlib
 import inspect
 import json
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.stats import spearmanr
 
 from disorder_landscape import ArgumentError, Nanowire, conductance
 from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims import __main__ as command_line
 from disorder_landscape.claims import measurements, measurements_of_models, readme, table
-from disorder_landscape.claims.claim import Claim, load_claims
+from disorder_landscape.claims.claim import Claim, ResultMissingError, load_claims
+from disorder_landscape.claims.derived import DERIVED
 from disorder_landscape.claims.findings import stored_findings, with_measured
 from disorder_landscape.claims.sources import provenance
 from disorder_landscape.cli import app
 from disorder_landscape.config import Config
 from disorder_landscape.learning.scaling import LabelScaler
 from disorder_landscape.physics.disorder import disorder_realization
+from disorder_landscape.studies.table import Result, write_table
 
 ALL = load_claims()
 STUDY = {"scale": "small", "file": "claims/study.csv", "column": "R2", "where": {"n": 5}}
@@ -225,6 +228,7 @@ def test_the_first_value_that_is_there_decides_and_each_has_its_verdict(study):
         ({"where": {}, "reduce": "mean"}, 0.93),
         ({"where": {}, "reduce": "min"}, 0.9),
         ({"where": {"n": "10"}, "times": 2}, 1.8),
+        ({"minus": {"n": 10}}, 0.06),
         ({"where": {}, "column": None, "file": "claims/study.json", "key": "fit/R2"}, 0.97),
     ],
 )
@@ -244,8 +248,8 @@ def test_what_a_study_took_is_what_it_says(study):
 @pytest.mark.parametrize(
     ("source", "said"),
     [
-        ({"where": {"n": 7}}, "one row .* it has 0"),
         ({"where": {}}, "one row .* it has 2"),
+        ({"derive": "nonesuch", "column": None}, "derive must name one of"),
         ({"column": "R3"}, "column R3"),
         ({"column": "word", "where": {"n": 5}}, "a number as word"),
         ({"where": {}, "column": None, "file": "claims/study.json", "key": "fit/p"}, "fit/p"),
@@ -255,6 +259,22 @@ def test_a_study_without_the_value_is_an_error(source, said, study):
     root = study("n,R2,word\n5,0.96,good\n10,0.9,bad\n")
     with pytest.raises(ArgumentError, match=said):
         stored_findings([claim(ours=[{**STUDY, **source}])], root)
+
+
+def test_a_study_that_has_not_come_so_far_is_waited_for(study):
+    (found,) = stored_findings([claim(ours=[{**STUDY, "where": {"n": 7}}])], study())
+    assert found.verdict == "not tested"
+    assert table.verdict(found).startswith("not tested yet: claims/study.csv has no row with n = 7")
+
+
+def test_a_study_without_provenance_has_its_plan(study):
+    root = study("n,R2,minutes\n5,0.96,2.5\n10,0.9,4\n")
+    (root / "claims" / "study.json").unlink()
+    plan = root / "configs" / "studies" / "study.toml"
+    plan.parent.mkdir(parents=True)
+    plan.write_text("")
+    (found,) = stored_findings([claim()], root)
+    assert (found.command, found.minutes) == ("landscape study configs/studies/study.toml", 6.5)
 
 
 def test_a_result_must_tell_how_it_was_made(study):
@@ -291,6 +311,63 @@ def test_shipped_data_must_have_the_checksum_that_is_shipped_with_them(tmp_path)
     sums.write_text(f"{'0' * 64}  models/m/metrics.json\n")
     with pytest.raises(ArgumentError, match="another file"):
         stored_findings([claim(ours=[source])], tmp_path)
+
+
+# ---- what is derived from a study's table -------------------------------------------------------
+
+
+def trainings(rows):
+    """Results of (components, realizations, width_fraction, seed, R2)."""
+    names = ("components", "realizations", "width_fraction", "seed", "R2")
+    rest = {
+        field.name: "" if field.type == "str" else 0
+        for field in fields(Result)
+        if field.name not in names
+    }
+    return [Result(**dict(zip(names, row, strict=True)), **rest) for row in rows]
+
+
+@pytest.fixture
+def learning_curves_table(tmp_path):
+    """Curves, straight in the logarithm, that cross R² = 0.77 at 2·n³, above it for n = 10."""
+    rows = [
+        (n, size, 0.1, seed, 0.77 + 0.1 * np.log(size / (off * 2 * n**3)))
+        for n, off in ((3, 1), (5, 1), (8, 1), (10, 1.5))
+        for seed in (0, 1)
+        for size in (n**3, 4 * n**3)
+    ]
+    write_table(tmp_path / "learning_curves.csv", trainings(rows))
+    return tmp_path / "learning_curves.csv"
+
+
+def test_the_fit_of_figure_2_is_derived_from_the_learning_curves(learning_curves_table):
+    of = {name: function(learning_curves_table) for name, function in list(DERIVED.items())[:6]}
+    assert of["fig2_fit"] < 0.9999 < of["fig2_fit_without_ten"]
+    assert of["fig2_exponent"] > 3
+    assert of["fig2_prefactor"] < 2
+    assert 0 < of["fig2_power_minus_exponential"] < 0.02
+    assert of["gain_of_last_step"] == pytest.approx(0.1 * np.log(4))
+
+
+def test_half_of_the_filters_is_derived_from_the_widths(tmp_path):
+    rows = [
+        (n, 100, width, seed, 0.77 - loss * (width == 0.5) + 0.01 * seed)
+        for n, loss in ((3, 0.002), (5, 0.006), (8, 0.004))
+        for width in (0.5, 1.0)
+        for seed in (0, 1)
+    ]
+    write_table(tmp_path / "network_width.csv", trainings([*rows, (10, 100, 1.0, 0, 0.7)]))
+    loss = DERIVED["loss_of_halving"](tmp_path / "network_width.csv")
+    assert loss == pytest.approx(0.006)
+    p = DERIVED["halving_independent_of_components"](tmp_path / "network_width.csv")
+    assert p == pytest.approx(spearmanr([1, 2, 3], [1, 3, 2]).pvalue)
+
+
+@pytest.mark.parametrize("name", DERIVED)
+def test_what_is_derived_waits_for_its_study(name, tmp_path):
+    write_table(tmp_path / "study.csv", trainings([(5, 100, 1.0, 0, 0.9)]))
+    with pytest.raises(ResultMissingError, match=r"study\.csv "):
+        DERIVED[name](tmp_path / "study.csv")
 
 
 # ---- measuring again ----------------------------------------------------------------------------

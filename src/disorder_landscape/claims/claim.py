@@ -18,6 +18,10 @@ Sense = Literal["at least", "at most", "within", "exactly"]
 Verdict = Literal["reproduced", "differs", "not tested"]
 
 
+class ResultMissingError(Exception):
+    """What a value would come from is not there: the study has not run, or not all of it."""
+
+
 class _Table(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -26,7 +30,7 @@ class _Table(BaseModel):
 
 
 class Stored(_Table):
-    """Our value in a file of results: JSON with a key, or CSV with a column and some rows."""
+    """Our value in a file of results: by a key (JSON), from a column (CSV), or derived from it."""
 
     file: str
     """From the root of the repository; where it is missing, the study has not run yet."""
@@ -34,17 +38,21 @@ class Stored(_Table):
     """JSON: names of the nested objects and of the value, joined with slashes."""
     where: dict[str, str | float] = {}
     """CSV: what columns must hold in the rows that count; no condition takes all rows."""
+    minus: dict[str, str | float] | None = None
+    """CSV: of the rows that fit this instead, the value is subtracted."""
     column: str | None = None
     """CSV: the column of the value."""
     reduce: Literal["only", "mean", "median", "min", "max", "sum"] = "only"
     """CSV: what becomes of several rows; "only" allows one."""
+    derive: str | None = None
+    """A study's table: the name of a function of `claims.derived`."""
     times: float = 1.0
     """A factor, such as 2 where an error is compared as two standard deviations."""
 
     @model_validator(mode="after")
-    def _json_or_csv(self) -> Stored:
-        if (self.key is None) == (self.column is None):
-            raise ValueError("a file needs either a key (JSON) or a column (CSV)")
+    def _one_of_three(self) -> Stored:
+        if sum(what is not None for what in (self.key, self.column, self.derive)) != 1:
+            raise ValueError("a file needs one of key (JSON), column (CSV) and derive")
         return self
 
 

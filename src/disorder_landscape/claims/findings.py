@@ -8,8 +8,14 @@ from pathlib import Path
 from typing import Any
 
 from disorder_landscape.chain import REPOSITORY
-from disorder_landscape.claims.claim import Claim, Measured, Stored, Verdict
-from disorder_landscape.claims.sources import ResultMissingError, provenance, stored_value
+from disorder_landscape.claims.claim import (
+    Claim,
+    Measured,
+    ResultMissingError,
+    Stored,
+    Verdict,
+)
+from disorder_landscape.claims.sources import provenance, stored_value
 
 
 @dataclass(frozen=True)

@@ -1,10 +1,11 @@
 """Our values, from the files that studies have left, and how those files were made.
 
-A study leaves claims/<study>.json and, where it has a table, claims/<study>.csv. The JSON file
-holds an object `provenance` with at least the command; where that has a `sha256`, the CSV file must
-have this checksum. Files under data_small have theirs in data_small/SHA256SUMS, and a model's
-config.json says what made it. Quick measurements are kept in claims/measured.json, each with the
-machine, versions and minutes.
+A study leaves a table, claims/<study>.csv, and claims/<study>.json with an object `provenance`: the
+command, and what else is known (minutes, machine, versions, `sha256` of the table, which is checked
+then). Where there is no such object, the plan of the study, configs/studies/<study>.toml, says what
+its command is, and the column `minutes` how long it took. Files under data_small have checksums in
+data_small/SHA256SUMS, and a model's config.json says what made it. Quick measurements are kept in
+claims/measured.json, each with machine, versions and minutes.
 """
 
 from __future__ import annotations
@@ -19,7 +20,8 @@ from typing import Any
 
 from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.chain import REPOSITORY
-from disorder_landscape.claims.claim import Claim, Measured, Stored
+from disorder_landscape.claims.claim import Claim, Measured, ResultMissingError, Stored
+from disorder_landscape.claims.derived import DERIVED
 from disorder_landscape.files import write_json
 
 MEASURED_FILE = "claims/measured.json"
@@ -35,17 +37,13 @@ _REDUCE: dict[str, Callable[[list[float]], float]] = {
 }
 
 
-class ResultMissingError(Exception):
-    """What a value would come from is not there: the study has not run yet."""
-
-
 def stored_value(claim: Claim, source: Stored | Measured, root: Path = REPOSITORY) -> float:
     """Return a value of ours from the repository.
 
     Raises
     ------
     ResultMissingError
-        If there is no such file, or the quick measurement has never been stored.
+        If there is no such file or no such row, or the quick measurement has never been stored.
     ArgumentError
         If the file is there but damaged, or holds no such value.
     """
@@ -54,7 +52,15 @@ def stored_value(claim: Claim, source: Stored | Measured, root: Path = REPOSITOR
     path = root / source.file
     if not path.exists():
         raise ResultMissingError(f"there is no {source.file}")
-    value = _from_json(path, source) if source.key is not None else _from_csv(path, source)
+    if source.key is not None:
+        value = _from_json(path, source)
+    elif source.column is not None:
+        value = _from_csv(path, source, source.where)
+        value -= 0.0 if source.minus is None else _from_csv(path, source, source.minus)
+    else:
+        must = f"name one of {', '.join(DERIVED)}"
+        require(source.derive in DERIVED, "derive", must, f"it is '{source.derive}'")
+        value = DERIVED[str(source.derive)](path)
     return source.times * value
 
 
@@ -82,12 +88,27 @@ def provenance(claim: Claim, source: Stored | Measured, root: Path = REPOSITORY)
         _check_sum(path, sums.get(path.relative_to(data).as_posix()), "data_small/SHA256SUMS")
         made: dict[str, Any] = _read_json(path.with_name("config.json"))
     else:
-        made = _read_json(path.with_suffix(".json")).get("provenance", {})
-        if path.suffix == ".csv" and "sha256" in made:
-            _check_sum(path, made["sha256"], path.with_suffix(".json").name)
+        made = _made_by_study(path, root)
     must = "tell the command that made it in its provenance"
     require("command" in made, source.file, must, "it does not")
     return {name: made[name] for name in made if isinstance(made[name], str | int | float)}
+
+
+def _made_by_study(path: Path, root: Path) -> dict[str, Any]:
+    """Return what the JSON file of a study says of how it was made, or what its plan says."""
+    beside, plan = path.with_suffix(".json"), root / "configs" / "studies" / f"{path.stem}.toml"
+    made: dict[str, Any] = {}
+    if path.suffix == ".csv":
+        minutes = [float(row["minutes"]) for row in _read_csv(path) if row.get("minutes")]
+        if minutes:
+            made["minutes"] = sum(minutes)
+        if plan.exists():
+            made["command"] = f"landscape study {plan.relative_to(root).as_posix()}"
+    if beside.exists():
+        made.update(_read_json(beside).get("provenance", {}))
+    if path.suffix == ".csv" and "sha256" in made:
+        _check_sum(path, made["sha256"], beside.name)
+    return made
 
 
 def _stored_measurement(claim: Claim, source: Measured, root: Path) -> dict[str, Any]:
@@ -110,17 +131,23 @@ def _from_json(path: Path, source: Stored) -> float:
     return _number(content, source)
 
 
-def _from_csv(path: Path, source: Stored) -> float:
-    with open(path, encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
-    for column in (*source.where, source.column):
+def _from_csv(path: Path, source: Stored, where: Mapping[str, str | float]) -> float:
+    rows = _read_csv(path)
+    for column in (*where, source.column):
         present = bool(rows) and column in rows[0]
         require(present, source.file, f"have a column {column}", "it has none, or no row")
-    kept = [row for row in rows if all(_same(row[c], v) for c, v in source.where.items())]
-    must = f"have {'one row' if source.reduce == 'only' else 'rows'} with {source.where}"
-    fits = len(kept) == 1 if source.reduce == "only" else len(kept) > 0
-    require(fits, source.file, must, f"it has {len(kept)}")
+    kept = [row for row in rows if all(_same(row[c], v) for c, v in where.items())]
+    conditions = ", ".join(f"{column} = {value}" for column, value in where.items())
+    if not kept:
+        raise ResultMissingError(f"{source.file} has no row with {conditions}")
+    one_is_enough = source.reduce != "only" or len(kept) == 1
+    require(one_is_enough, source.file, f"have one row with {conditions}", f"it has {len(kept)}")
     return _REDUCE[source.reduce]([_number(row[str(source.column)], source) for row in kept])
+
+
+def _read_csv(path: Path) -> list[dict[str, str]]:
+    with open(path, encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
 
 
 def _same(cell: str, value: str | float) -> bool:
