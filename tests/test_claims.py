@@ -16,7 +16,13 @@ from scipy.stats import spearmanr
 from disorder_landscape import ArgumentError, Nanowire, conductance
 from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims import __main__ as command_line
-from disorder_landscape.claims import measurements, measurements_of_models, readme, table
+from disorder_landscape.claims import (
+    measurements,
+    measurements_of_models,
+    measurements_of_wires,
+    readme,
+    table,
+)
 from disorder_landscape.claims.claim import Claim, ResultMissingError, load_claims
 from disorder_landscape.claims.derived import DERIVED
 from disorder_landscape.claims.findings import stored_findings, with_measured
@@ -503,15 +509,15 @@ def test_arithmetic_of_the_papers_core_hours():
 
 
 def test_the_transition_of_a_long_pristine_wire_is_where_theory_says():
-    assert measurements.transition(0.3) == pytest.approx(1, abs=0.02)
+    assert measurements_of_wires.transition(0.3) == pytest.approx(1, abs=0.02)
 
 
 def test_the_mean_is_told_by_no_component(monkeypatch):
-    monkeypatch.setattr(measurements, "DRAWS", 1000)
-    measurements._realizations.cache_clear()
-    assert abs(measurements.mean_told_by_components(5)) < 0.05
-    assert measurements.mean_spread(5) == pytest.approx(0.01, rel=0.1)
-    measurements._realizations.cache_clear()
+    monkeypatch.setattr(measurements_of_wires, "DRAWS", 1000)
+    measurements_of_wires._realizations.cache_clear()
+    assert abs(measurements_of_wires.mean_told_by_components(5)) < 0.05
+    assert measurements_of_wires.mean_spread(5) == pytest.approx(0.01, rel=0.1)
+    measurements_of_wires._realizations.cache_clear()
 
 
 @dataclass

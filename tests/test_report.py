@@ -20,7 +20,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "report"))  # as if run as a 
 import build
 import pieces
 
-PNG = b"\x89PNG\r\n\x1a\n"
+PNG = b"\x89PNG\r\n\x1a\n" + b"\0\0\0\x0dIHDR" + (1000).to_bytes(4)
 VOID = {"meta", "img", "br", "hr", "link", "input"}
 
 
@@ -86,6 +86,7 @@ def test_the_page_holds_claims_figures_and_conventions(page):
     assert "Not drawn yet: <code>make figure-1</code>" in page
     assert "python paper_figures/figure_S9.py --preset smoke</code> · 0.3 min" in page
     pictures = [base64.b64decode(source.split(",")[1]) for source in read.sources]
+    assert page.count('<img width="450"') == 2
     assert pictures == [PNG + b"figure_3", PNG + b"figure_S9"]
     text = re.sub(r"<[^>]*>", "", page)
     assert "301 sites, or barriers on sites of their own" in text  # of the README

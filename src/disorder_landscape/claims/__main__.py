@@ -72,7 +72,8 @@ def _measure(found: Sequence[Finding]) -> dict[str, dict[str, Any]]:
     """Return value, minutes, machine and versions of each quick measurement, by id."""
     from llvmlite.binding import get_host_cpu_name
 
-    from disorder_landscape.claims.measurements import cores, measure
+    from disorder_landscape.claims.measurements import measure
+    from disorder_landscape.claims.measurements_of_time import cores
 
     made_by = {
         "machine": f"{get_host_cpu_name()}, {cores()} cores",
