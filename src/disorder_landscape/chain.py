@@ -3,8 +3,8 @@
 A run is a configuration and a folder of results: build/<name>/model, build/<name>/evaluation.nc.
 Its dataset is in build/datasets, which all runs and studies share. A preset has a run for each of
 the paper's two models: of five components and α, configs/<preset>.toml, and of ten components,
-configs/<preset>_ten_components.toml or, where there is none, the shipped one. What is shipped needs
-no dataset: models and test sets are in data_small.
+configs/<preset>_ten_components.toml or, where there is none, the shipped network. What is shipped
+needs no dataset: models and test sets are in data_small.
 """
 
 from __future__ import annotations
@@ -99,7 +99,8 @@ def preset_run(preset: str, build: str | Path = "build", model: str = FIVE) -> R
     build : path
         Where the folder of the run is, or will be.
     model : {"five_components_and_alpha", "ten_components"}
-        With ten components, presets that have no such configuration take what is shipped.
+        Presets that have no configuration with ten components take the shipped network, and
+        draw it as they draw the other.
 
     Raises
     ------
@@ -116,6 +117,9 @@ def preset_run(preset: str, build: str | Path = "build", model: str = FIVE) -> R
     from disorder_landscape.learning.model import load_model_config
 
     config = load_model_config(shipped_model(model))
+    if preset != SHIPPED:
+        figures = load_config(REPOSITORY / "configs" / f"{preset}.toml").figures
+        config = config.model_copy(update={"figures": figures})
     return Run(model, config, Path(build) / SHIPPED / model, shipped=True)
 
 
