@@ -163,13 +163,9 @@ def evaluate(run: Run) -> xr.Dataset:
     test = read_test_set(run)
     model = load_model(run.model_folder)
     predicted = predict(model, test)
-    alpha_is_label = run.config.dataset.alpha_is_label
-    scores = score(
-        label_array(test, alpha_is_label),
-        label_array(predicted, alpha_is_label),
-        model.labels,
-        run.config.dataset.sites,
-    )
+    labels = model.labels
+    true, guess = (label_array(one, labels.names) for one in (test, predicted))
+    scores = score(true, guess, labels, run.config.dataset.sites)
     names = ("components", "alpha", "potential")
     evaluation = xr.merge(
         [test[list(names)], predicted[list(names)].rename({n: f"{n}_predicted" for n in names})],
@@ -181,7 +177,11 @@ def evaluate(run: Run) -> xr.Dataset:
         "fingerprint": _fingerprint(run),
         "R2": scores.r2,
         "delta_V": scores.delta_V,
-        **({} if scores.delta_alpha is None else {"delta_alpha": scores.delta_alpha}),
+        **{
+            f"delta_{name}": value
+            for name, value in (("alpha", scores.delta_alpha), ("mean", scores.delta_mean))
+            if value is not None
+        },
         **{f"R2_{label}": r2 for label, r2 in scores.r2_by_label.items()},
     }
     write_dataset(evaluation, run.evaluation_file, attrs)

@@ -139,6 +139,8 @@ class TrainingConfig(_Section):
     """Feed asinh(G/s), standardised per pixel, instead of G."""
     mirror: bool = False
     """Train on mirrored wires too, and average predictions over the mirror."""
+    predict_mean: bool = False
+    """Predict the mean of V too, which the paper does not; it is not counted in R²."""
     noise: Annotated[float, Field(ge=0, le=10)] = 0.0
     """Standard deviation in e²/h of Gaussian errors, drawn anew at every step."""
     networks: Positive = 1

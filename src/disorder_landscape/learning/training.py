@@ -84,7 +84,7 @@ def train(
     training, test = split(dataset.sizes["realization"], config.training.test_fraction)
     training = first(training, config.training.realizations)
     X = conductance_array(dataset)
-    Y = label_array(dataset, config.dataset.alpha_is_label)
+    Y = label_array(dataset, names_of_labels(config))
     claim(folder, config, dataset, command)
     if (folder / METRICS).exists():
         if progress:
@@ -176,10 +176,16 @@ class Steps:
         return total / len(order)
 
 
+def names_of_labels(config: Config) -> tuple[str, ...]:
+    """Return the names of what a configuration's network predicts."""
+    dataset = config.dataset
+    return label_names(dataset.components, dataset.alpha_is_label, config.training.predict_mean)
+
+
 def _start_or_resume(
     folder: Path, config: Config, examples: Examples
 ) -> tuple[TrainedModel, list[Epoch]]:
-    names = label_names(config.dataset.components, config.dataset.alpha_is_label)
+    names = names_of_labels(config)
     labels = examples.fit_labels(names)
     inputs = examples.fit_inputs() if config.training.compress_inputs else None
     saved = load_checkpoint(folder)
