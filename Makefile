@@ -3,6 +3,9 @@
 # Which run: the name of a file in configs/, or "shipped" for the data and the model in data_small/.
 PRESET ?= small
 
+# Which study: the name of a file in configs/studies.
+STUDY ?= learning_curves
+
 # The processes of a pool share the cores already; training sets its own number of threads.
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
@@ -25,8 +28,8 @@ COMPILE := .venv/bin/uv pip compile --universal --python-version 3.11 --generate
 
 STARTED := $(shell date +%s)
 
-.PHONY: help setup generate train evaluate figures $(FIGURES) bench accuracy claims claims-table report
-.PHONY: test lint lock clean
+.PHONY: help setup generate train evaluate figures $(FIGURES) bench accuracy study
+.PHONY: claims claims-table report test lint lock clean
 .SUFFIXES:
 # One after the other: each command uses all cores by itself.
 .NOTPARALLEL:
@@ -63,6 +66,9 @@ bench: $(READY) ## time the solvers, table and plot into build/bench (a few minu
 
 accuracy: $(READY) ## compare 2000 thermal averages with the integral by brute force
 	$(VENV_PYTHON) claims/accuracy.py
+
+study: $(READY) ## carry out the study STUDY of configs/studies, its table into claims (hours)
+	$(LANDSCAPE) study configs/studies/$(STUDY).toml
 
 # ONLY=id measures one claim; STORE=1 keeps what has been measured as the value that is stored.
 claims: $(READY) ## check the paper's claims: measure again what is quick, table into build/claims.md

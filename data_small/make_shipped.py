@@ -1,26 +1,37 @@
-"""Make the shipped model and test set from the small preset's run, and SHA256SUMS of all data.
+"""Make the shipped models and test sets from their runs, and SHA256SUMS of all data.
 
-Run from the repository's root, after `make evaluate`: python data_small/make_shipped.py
+Run from the repository's root, once the runs are evaluated (`make evaluate`, and the ten-component
+run as data_small/README.md says): python data_small/make_shipped.py
 """
 
 import hashlib
 import shutil
 from pathlib import Path
 
-from disorder_landscape.chain import SHIPPED_MODEL, SHIPPED_TEST_SET, preset_run, read_test_set
+from disorder_landscape.chain import (
+    FIVE,
+    TEN,
+    Run,
+    preset_run,
+    read_test_set,
+    shipped_model,
+    shipped_test_set,
+)
 from disorder_landscape.dataset.store import provenance, write_dataset
 
+PRESETS = {FIVE: "small", TEN: "full"}
+"""Whose run of each model is shipped."""
 TEST_REALIZATIONS = 200
 MODEL_FILES = ("network.keras", "scaler.json", "config.json", "metrics.json", "curves.csv")
 DATA = Path(__file__).parent
 
 
-def main() -> None:
-    """Copy, cut and sum."""
-    run = preset_run("small")
-    SHIPPED_MODEL.mkdir(parents=True, exist_ok=True)
+def ship(run: Run, model: str) -> None:
+    """Copy a trained model and the first of its test realizations."""
+    folder = shipped_model(model)
+    folder.mkdir(parents=True, exist_ok=True)
     for name in MODEL_FILES:
-        shutil.copyfile(run.model_folder / name, SHIPPED_MODEL / name)
+        shutil.copyfile(run.model_folder / name, folder / name)
     test = read_test_set(run).isel(realization=slice(TEST_REALIZATIONS))
     indices = test.realization.to_numpy()
     attrs = {
@@ -31,12 +42,13 @@ def main() -> None:
         "first_index": indices[0],
         "last_index": indices[-1],
     }
-    write_dataset(test, SHIPPED_TEST_SET, attrs)
-    files = sorted(
-        path
-        for path in DATA.rglob("*")
-        if path.suffix in {".nc", ".keras", ".json", ".csv", ".png"}
-    )
+    write_dataset(test, shipped_test_set(model), attrs)
+
+
+def write_sums() -> None:
+    """Write the checksums of everything that is shipped."""
+    suffixes = {".nc", ".keras", ".json", ".csv", ".png"}
+    files = sorted(path for path in DATA.rglob("*") if path.suffix in suffixes)
     sums = [
         f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.relative_to(DATA)}\n"
         for path in files
@@ -45,4 +57,6 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    for model, preset in PRESETS.items():
+        ship(preset_run(preset, model=model), model)
+    write_sums()

@@ -24,7 +24,8 @@ from wires import drawn_realizations
 def data(request: Request) -> xr.Dataset:
     """Return what Figures 4 and 3 show, of this figure's wires."""
     disorder = disorder_data(drawn_realizations(request.evaluation(), request.config))
-    return xr.merge([disorder, figure_3.data(request)], combine_attrs="drop_conflicts")
+    conductances = figure_3.data(request).drop_vars("alpha")
+    return disorder.assign(conductances.data_vars)
 
 
 def draw(data: xr.Dataset) -> Figure:

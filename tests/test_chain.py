@@ -116,9 +116,12 @@ def test_a_shipped_model_predicts_its_shipped_test_set(model, R2, tmp_path):
     )
 
 
-def test_presets_without_ten_components_take_the_shipped_ones():
-    assert chain.preset_run("small", model=chain.TEN).shipped
-    assert not chain.preset_run("smoke", model=chain.TEN).shipped
+def test_presets_without_ten_components_draw_the_shipped_ones_their_way():
+    run = chain.preset_run("smoke", model=chain.TEN)
+    assert run.shipped
+    assert run.config.dataset.components == 10
+    assert run.config.figures == chain.preset_run("smoke").config.figures
+    assert not chain.preset_run("full", model=chain.TEN).shipped
     assert not chain.preset_run("small").shipped
 
 

@@ -3,8 +3,8 @@
 A run is a configuration and a folder of results: build/<name>/model, build/<name>/evaluation.nc.
 Its dataset is in build/datasets, which all runs and studies share. A preset has a run for each of
 the paper's two models: of five components and α, configs/<preset>.toml, and of ten components,
-configs/<preset>_ten_components.toml or, where there is none, the shipped one. What is shipped needs
-no dataset: models and test sets are in data_small.
+configs/<preset>_ten_components.toml or, where there is none, the shipped network. What is shipped
+needs no dataset: models and test sets are in data_small.
 """
 
 from __future__ import annotations
@@ -99,7 +99,8 @@ def preset_run(preset: str, build: str | Path = "build", model: str = FIVE) -> R
     build : path
         Where the folder of the run is, or will be.
     model : {"five_components_and_alpha", "ten_components"}
-        With ten components, presets that have no such configuration take what is shipped.
+        Presets that have no configuration with ten components take the shipped network, and
+        draw it as they draw the other.
 
     Raises
     ------
@@ -116,6 +117,9 @@ def preset_run(preset: str, build: str | Path = "build", model: str = FIVE) -> R
     from disorder_landscape.learning.model import load_model_config
 
     config = load_model_config(shipped_model(model))
+    if preset != SHIPPED:
+        figures = load_config(REPOSITORY / "configs" / f"{preset}.toml").figures
+        config = config.model_copy(update={"figures": figures})
     return Run(model, config, Path(build) / SHIPPED / model, shipped=True)
 
 
@@ -159,13 +163,9 @@ def evaluate(run: Run) -> xr.Dataset:
     test = read_test_set(run)
     model = load_model(run.model_folder)
     predicted = predict(model, test)
-    alpha_is_label = run.config.dataset.alpha_is_label
-    scores = score(
-        label_array(test, alpha_is_label),
-        label_array(predicted, alpha_is_label),
-        model.labels,
-        run.config.dataset.sites,
-    )
+    labels = model.labels
+    true, guess = (label_array(one, labels.names) for one in (test, predicted))
+    scores = score(true, guess, labels, run.config.dataset.sites)
     names = ("components", "alpha", "potential")
     evaluation = xr.merge(
         [test[list(names)], predicted[list(names)].rename({n: f"{n}_predicted" for n in names})],
@@ -177,7 +177,11 @@ def evaluate(run: Run) -> xr.Dataset:
         "fingerprint": _fingerprint(run),
         "R2": scores.r2,
         "delta_V": scores.delta_V,
-        **({} if scores.delta_alpha is None else {"delta_alpha": scores.delta_alpha}),
+        **{
+            f"delta_{name}": value
+            for name, value in (("alpha", scores.delta_alpha), ("mean", scores.delta_mean))
+            if value is not None
+        },
         **{f"R2_{label}": r2 for label, r2 in scores.r2_by_label.items()},
     }
     write_dataset(evaluation, run.evaluation_file, attrs)

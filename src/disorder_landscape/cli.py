@@ -178,6 +178,8 @@ def evaluate(config: ConfigFile, build: Build = Path("build")) -> None:
     print(f"dV_dis(x_i)           {scores['delta_V']:.4f} meV")
     if "delta_alpha" in scores:
         print(f"d alpha               {scores['delta_alpha']:.4f} meV nm")
+    if "delta_mean" in scores:
+        print(f"d mean of V           {scores['delta_mean']:.4f} meV")
     for name, value in scores.items():
         if name.startswith("R2_"):
             print(f"R2 of {name.removeprefix('R2_'):8s}        {value:.4f}")

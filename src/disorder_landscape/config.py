@@ -125,6 +125,8 @@ class TrainingConfig(_Section):
     """How many of the training realizations are used; none takes all."""
     epochs: tuple[Positive, ...] = (15, 15, 10, 5)
     """Epochs of each set; the learning rate is divided by 10 from set to set."""
+    passes: Positive = 1
+    """Passes over the training realizations that count as one epoch, where they are few."""
     schedule: Literal["sets", "cosine"] = "sets"
     """"cosine" lets the learning rate fall along a cosine instead, step by step, to zero."""
     learning_rate: LearningRate = 1e-4
@@ -137,8 +139,12 @@ class TrainingConfig(_Section):
     """Feed asinh(G/s), standardised per pixel, instead of G."""
     mirror: bool = False
     """Train on mirrored wires too, and average predictions over the mirror."""
+    predict_mean: bool = False
+    """Predict the mean of V too, which the paper does not; it is not counted in R²."""
     noise: Annotated[float, Field(ge=0, le=10)] = 0.0
     """Standard deviation in e²/h of Gaussian errors, drawn anew at every step."""
+    networks: Positive = 1
+    """How many are trained, with consecutive seeds; the prediction is their mean."""
     seed: Annotated[int, Field(ge=0)] = 0
 
 

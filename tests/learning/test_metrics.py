@@ -46,3 +46,13 @@ def test_without_alpha():
 def test_scores_survive_json():
     scores = score(Y, Y * 1.01, SCALER, sites=4)
     assert Scores.from_dict(json.loads(json.dumps(scores.to_dict()))) == scores
+
+
+def test_the_mean_of_the_potential_is_scored_apart():
+    names = ("c_1", "alpha", "mean")
+    Y3 = np.column_stack([Y, [0.01, 0.0, -0.01]])
+    scaler = LabelScaler(names, Y3.mean(axis=0), Y3.std(axis=0))
+    scores = score(Y3, Y3 + [[0.0, 0.0, 0.01]] * 3 * np.array([[1], [-1], [0]]), scaler, sites=4)
+    assert (scores.r2, scores.delta_V) == (1, 0)
+    assert scores.r2_by_label["mean"] == pytest.approx(1 - 2 / 2)
+    assert scores.delta_mean == pytest.approx(0.01 * np.sqrt(2 / 3))

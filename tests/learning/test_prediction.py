@@ -12,7 +12,7 @@ from disorder_landscape.learning.mirror import mirrored_labels
 from disorder_landscape.learning.model import TrainedModel, load_model
 from disorder_landscape.learning.networks import build_network
 from disorder_landscape.learning.prediction import predict
-from disorder_landscape.learning.scaling import LabelScaler, label_names
+from disorder_landscape.learning.scaling import LabelScaler, conductance_array, label_names
 from disorder_landscape.physics.disorder import potential_from_components
 from synthetic import synthetic_dataset, tiny_config
 
@@ -84,6 +84,20 @@ def test_alpha_is_the_configs_where_it_is_no_label():
     Y = predict(model, synthetic_dataset(config))
     assert Y["alpha"].values.tolist() == [7.5] * 4
     assert Y.sizes["component"] == 5
+
+
+def test_the_potential_has_the_mean_that_the_network_predicts():
+    config = tiny_config(realizations=4, width_fraction=0.01, mirror=True, predict_mean=True)
+    names = label_names(5, alpha_is_label=True, mean_is_label=True)
+    labels = LabelScaler(names, np.arange(7.0), np.ones(7))
+    model = TrainedModel(build_network((8, 8, 5, 4), 7, 0.01), labels, None, config)
+    G = synthetic_dataset(config)
+    said = model.predict_labels(conductance_array(G))
+    Y = predict(model, G)
+    np.testing.assert_allclose(Y["potential"].mean("site"), said[:, 6])
+    np.testing.assert_array_equal(Y["alpha"], said[:, 5])
+    swapped = G.rename(G_LL="G_RR", G_RR="G_LL", G_LR="G_RL", G_RL="G_LR")
+    np.testing.assert_allclose(predict(model, swapped)["potential"], Y["potential"][:, ::-1])
 
 
 @pytest.mark.parametrize(

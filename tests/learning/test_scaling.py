@@ -66,15 +66,21 @@ def test_conductances_that_are_not_finite_are_refused(dataset, value):
 
 
 def test_labels_are_components_then_alpha(dataset):
-    Y = label_array(dataset, alpha_is_label=True)
+    Y = label_array(dataset, label_names(5, True))
     np.testing.assert_array_equal(Y[:, :5], dataset["components"])
     np.testing.assert_array_equal(Y[:, 5], dataset["alpha"])
-    assert label_array(dataset, alpha_is_label=False).shape == (400, 5)
+    assert label_array(dataset, label_names(5, False)).shape == (400, 5)
     assert label_names(2, True) == ("c_1", "c_2", "alpha")
 
 
+def test_the_mean_of_the_potential_may_be_a_label(dataset):
+    assert label_names(2, False, True) == ("c_1", "c_2", "mean")
+    shifted = dataset.assign(potential=dataset["potential"] + 0.01)
+    np.testing.assert_allclose(label_array(shifted, label_names(5, True, True))[:, 6], 0.01)
+
+
 def test_label_scaler_gives_zero_mean_and_unit_variance(dataset):
-    Y = label_array(dataset, alpha_is_label=True)
+    Y = label_array(dataset, label_names(5, True))
     scaler = LabelScaler.fit(label_names(5, True), Y)
     np.testing.assert_allclose(scaler.scale(Y).mean(axis=0), 0, atol=1e-12)
     np.testing.assert_allclose(scaler.scale(Y).std(axis=0), 1, rtol=1e-12)
@@ -82,7 +88,7 @@ def test_label_scaler_gives_zero_mean_and_unit_variance(dataset):
 
 
 def test_label_scaler_survives_json_to_the_last_bit(dataset):
-    scaler = LabelScaler.fit(label_names(5, True), label_array(dataset, alpha_is_label=True))
+    scaler = LabelScaler.fit(label_names(5, True), label_array(dataset, label_names(5, True)))
     again = through_json(scaler)
     assert again.names == scaler.names
     assert again.mean.tobytes() == scaler.mean.tobytes()

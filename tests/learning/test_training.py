@@ -13,6 +13,7 @@ from disorder_landscape.learning import training
 from disorder_landscape.learning.curves import read_curves
 from disorder_landscape.learning.examples import first, split
 from disorder_landscape.learning.model import load_model
+from disorder_landscape.learning.scaling import conductance_array
 from disorder_landscape.learning.schedule import learning_rate, numbered_epochs
 from disorder_landscape.learning.training import train
 from synthetic import synthetic_dataset, tiny_config
@@ -171,3 +172,34 @@ def test_only_the_first_training_realizations_are_used_where_so_many_are_asked_f
     assert first(slice(0, 36), None) == slice(0, 36)
     with pytest.raises(ArgumentError, match="at most 36"):
         first(slice(0, 36), 37)
+
+
+def test_passes_are_epochs_without_a_validation_in_between(tmp_path, monkeypatch):
+    config = tiny_config(realizations=40, width_fraction=0.01, epochs=(2,), passes=3)
+    seen = []
+    take = training.Examples.conductances
+    monkeypatch.setattr(
+        training.Examples,
+        "conductances",
+        lambda self, which, rng: seen.append(which) or take(self, which, rng),
+    )
+    train(synthetic_dataset(config), config, tmp_path / "model", progress=False)
+    assert len(read_curves(tmp_path / "model" / "curves.csv")) == 2
+    counts = np.bincount(np.concatenate(seen))
+    assert counts.tolist() == [6] * 72  # two epochs of three passes over 36 wires and images
+
+
+def test_an_ensemble_predicts_the_mean_of_its_networks(tmp_path):
+    config = tiny_config(realizations=40, width_fraction=0.01, epochs=(1,), networks=2, seed=3)
+    dataset = synthetic_dataset(config)
+    scores = train(dataset, config, tmp_path / "both", progress=False)
+    both, *members = (
+        load_model(tmp_path / "both" / name) for name in ("", "network-1", "network-2")
+    )
+    assert [member.config.training.seed for member in members] == [3, 4]
+    X = conductance_array(dataset)[:5]
+    one, other = (member.predict_labels(X) for member in members)
+    assert abs(one - other).max() > 1e-3
+    np.testing.assert_allclose(both.predict_labels(X), (one + other) / 2, atol=1e-5)
+    assert train(dataset, config, tmp_path / "both", progress=False) == scores
+    assert [epoch.epoch for epoch in read_curves(tmp_path / "both" / "curves.csv")] == [1, 2]

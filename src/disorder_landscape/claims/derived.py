@@ -9,45 +9,48 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.stats import linregress, spearmanr
 
 from disorder_landscape.claims.claim import ResultMissingError
 from disorder_landscape.physics.parameters import FloatArray
-from disorder_landscape.studies.crossings import PowerLaw, fit_power_law, learning_curves
 from disorder_landscape.studies.table import read_table
 
 FINE_TUNED = 10
 """Component count that the paper leaves out of its second fit of Fig. 2."""
+R2_AIMED_AT = 0.77
+"""Of Figs. 2 and S2."""
 
 
 def fig2_prefactor(table: Path) -> float:
     """Return A of the realizations A·n^p that are needed for R² = 0.77."""
-    return _power_law(table).prefactor
+    return float(np.exp(_straight_line(*_log_crossings(table)).intercept))
 
 
 def fig2_exponent(table: Path) -> float:
     """Return p of the same."""
-    return _power_law(table).exponent
+    return float(_straight_line(*_log_crossings(table)).slope)
 
 
 def fig2_fit(table: Path) -> float:
-    """Return R² of this fit."""
-    return _power_law(table).R2
+    """Return R² of this fit, on logarithmic axes."""
+    return float(_straight_line(*_log_crossings(table)).rvalue ** 2)
 
 
 def fig2_fit_without_ten(table: Path) -> float:
     """Return R² of the fit to all component counts but ten."""
-    n, needed = _crossings(table)
-    kept = n != FINE_TUNED
-    return fit_power_law(n[kept], needed[kept]).R2
+    log_n, log_needed = _log_crossings(table)
+    kept = log_n != np.log(FINE_TUNED)
+    return float(_straight_line(log_n[kept], log_needed[kept]).rvalue ** 2)
 
 
 def fig2_power_minus_exponential(table: Path) -> float:
     """Return R² of this fit minus that of an exponential, both of log(realizations)."""
-    n, needed = _crossings(table)
-    return _power_law(table).R2 - float(linregress(n, np.log(needed)).rvalue ** 2)
+    log_n, log_needed = _log_crossings(table)
+    exponential = _straight_line(np.exp(log_n), log_needed)
+    return fig2_fit(table) - float(exponential.rvalue**2)
 
 
 def gain_of_last_step(table: Path) -> float:
@@ -55,11 +58,14 @@ def gain_of_last_step(table: Path) -> float:
 
     From the number before it; means over seeds.
     """
-    curves = [one for one in learning_curves(read_table(table)) if one.components == FINE_TUNED]
-    if not curves or curves[0].realizations.size < 2:
+    R2: dict[int, list[float]] = defaultdict(list)
+    for one in read_table(table):
+        if one.components == FINE_TUNED:
+            R2[one.realizations].append(one.R2)
+    if len(R2) < 2:
         raise ResultMissingError(f"{table.name} has no two sizes of ten components")
-    R2 = curves[0].R2.mean(axis=0)
-    return float(R2[-1] - R2[-2])
+    before, last = sorted(R2)[-2:]
+    return float(np.mean(R2[last]) - np.mean(R2[before]))
 
 
 def loss_of_halving(table: Path) -> float:
@@ -91,24 +97,37 @@ DERIVED: dict[str, Callable[[Path], float]] = {
 """What a claim can name, by name."""
 
 
-def _crossings(table: Path) -> tuple[FloatArray, FloatArray]:
-    """Return component counts and the realizations that each needs, geometric means over seeds.
+def _log_crossings(table: Path) -> tuple[FloatArray, FloatArray]:
+    """Return logarithms of component counts and of the realizations that each needs.
 
-    Counts of which a seed's curve does not cross R² = 0.77 are left out, as in Fig. 2.
+    Geometric means over seeds, each interpolated in its learning curve, linearly in log(size).
+    Component counts of which a seed's curve does not cross R² = 0.77 are left out.
     """
-    curves = {
-        one.components: one.crossings()
-        for one in learning_curves(read_table(table))
-        if np.isfinite(one.crossings()).all()
-    }
-    if len(curves) < 3:
-        raise ResultMissingError(f"{table.name} has no three crossings of R² = 0.77")
-    needed = [np.exp(np.log(of).mean()) for of in curves.values()]
-    return np.array(list(curves), dtype=np.float64), np.array(needed)
+    curves: dict[int, dict[int, dict[int, float]]] = defaultdict(lambda: defaultdict(dict))
+    for one in read_table(table):
+        curves[one.components][one.seed][one.realizations] = one.R2
+    crossings: dict[int, float] = {}
+    for components, seeds in sorted(curves.items()):
+        logs = [_log_crossing(dict(sorted(curve.items()))) for curve in seeds.values()]
+        if np.isfinite(logs).all():
+            crossings[components] = float(np.mean(logs))
+    if len(crossings) < 3:
+        raise ResultMissingError(f"{table.name} has no three crossings of R² = {R2_AIMED_AT}")
+    return np.log(list(crossings)), np.array(list(crossings.values()))
 
 
-def _power_law(table: Path) -> PowerLaw:
-    return fit_power_law(*_crossings(table))
+def _log_crossing(curve: dict[int, float]) -> float:
+    """Return log(size) at which a learning curve first reaches R² = 0.77, NaN if nowhere."""
+    log_size, R2 = np.log(list(curve)), np.maximum.accumulate(list(curve.values()))
+    if not R2[0] < R2_AIMED_AT <= R2[-1]:
+        return float("nan")
+    after = int(np.argmax(R2 >= R2_AIMED_AT))
+    return float(np.interp(R2_AIMED_AT, R2[after - 1 : after + 1], log_size[after - 1 : after + 1]))
+
+
+def _straight_line(x: FloatArray, y: FloatArray) -> Any:
+    """Return SciPy's fit of a straight line: slope, intercept, rvalue."""
+    return linregress(x, y)
 
 
 def _losses_of_halving(table: Path) -> tuple[FloatArray, FloatArray]:

@@ -14,8 +14,8 @@ from disorder_landscape.dataset.shards import VARIABLES
 from disorder_landscape.dataset.store import read_dataset
 from disorder_landscape.learning.metrics import Scores, score
 from disorder_landscape.learning.model import TrainedModel, load_model, load_model_config
+from disorder_landscape.learning.prediction import predict
 from disorder_landscape.learning.scaling import conductance_array, label_array
-from disorder_landscape.physics.disorder import potential_from_components
 from disorder_landscape.physics.labels import CONDUCTANCES
 from disorder_landscape.physics.parameters import FloatArray, Nanowire
 from disorder_landscape.physics.topology import topological_visibility
@@ -63,8 +63,8 @@ def conductance_match(model: str, channels: str, mean: str) -> float:
     model : str
         As in `model_score`.
     channels : {"local", "nonlocal", "all"}
-    mean : {"zero", "known"}
-        The predicted potentials' mean, which no label describes: as predicted, or the true one.
+    mean : {"predicted", "known"}
+        The predicted potentials' mean: as predicted, zero where it is no label, or the true one.
     """
     test, _ = _loaded(model)
     simulated = _simulated(model, mean)
@@ -117,9 +117,9 @@ def _predicted(model: str, noise: float, channels: str) -> FloatArray:
 
 def _scores(model: str, noise: float, channels: str) -> Scores:
     test, network = _loaded(model)
-    dataset = network.config.dataset
-    Y = label_array(test, dataset.alpha_is_label)
-    return score(Y, _predicted(model, noise, channels), network.labels, dataset.sites)
+    Y = label_array(test, network.labels.names)
+    sites = network.config.dataset.sites
+    return score(Y, _predicted(model, noise, channels), network.labels, sites)
 
 
 @cache
@@ -139,13 +139,14 @@ def _test_wires(model: str) -> list[Nanowire]:
 def _predicted_wires(model: str, mean: str) -> list[Nanowire]:
     """Return the wires that the network says the test wires are."""
     test, network = _loaded(model)
-    dataset = network.config.dataset
-    Y = _predicted(model, 0.0, "all")
-    means = {"zero": np.zeros(len(Y)), "known": test["potential"].mean("site").to_numpy()}
+    said = predict(network, test)
+    V = said["potential"].to_numpy()
+    true_mean = test["potential"].mean("site").to_numpy()
+    means = {"predicted": V.mean(axis=1), "known": true_mean}
     require(mean in means, "mean", f"be one of {', '.join(means)}", f"it is '{mean}'")
-    V = potential_from_components(Y[:, : dataset.components], dataset.sites, means[mean])
-    alpha = Y[:, -1] if dataset.alpha_is_label else np.full(len(Y), dataset.alpha_range[0])
-    return [Nanowire(one, alpha=float(a)) for one, a in zip(V, alpha, strict=True)]
+    V += (means[mean] - V.mean(axis=1))[:, None]
+    pairs = zip(V, said["alpha"].to_numpy(), strict=True)
+    return [Nanowire(potential, alpha=float(alpha)) for potential, alpha in pairs]
 
 
 def _r2(true: xr.DataArray, other: xr.DataArray) -> float:

@@ -19,9 +19,10 @@ class Scores:
     """How well labels of test realizations are predicted."""
 
     r2: float
-    """Scikit-learn's R² on standard-scaled Y, averaged over the labels with equal weights."""
+    """Scikit-learn's R² on standard-scaled Y, averaged over the paper's labels, the components and
+    α, with equal weights."""
     r2_by_label: dict[str, float]
-    """R² of each component and of α."""
+    """R² of each component and of α, and of the mean of V where it is predicted."""
     delta_V: float
     """ΔV_dis(x_i) in meV: standard deviation of the error of the potential over all sites and test
     realizations. The potential is made from the components; the mean potential, which no label
@@ -30,6 +31,8 @@ class Scores:
     """Δα in meV nm: standard deviation of the error of α over test realizations."""
     realizations: int
     """How many test realizations."""
+    delta_mean: float | None = None
+    """The same of the mean of V in meV, where it is predicted; the paper does not."""
 
     def to_dict(self) -> dict[str, Any]:
         """Return what JSON can hold."""
@@ -53,14 +56,15 @@ def score(Y: FloatArray, Y_predicted: FloatArray, scaler: LabelScaler, sites: in
     sites : int
         Sites of the wire.
     """
-    scaled = scaler.scale(Y), scaler.scale(Y_predicted)
-    by_label = r2_score(*scaled, multioutput="raw_values")
-    n = scaler.components
+    by_label = r2_score(scaler.scale(Y), scaler.scale(Y_predicted), multioutput="raw_values")
+    r2 = {name: float(one) for name, one in zip(scaler.names, by_label, strict=True)}
     error = Y_predicted - Y
+    deviation = dict(zip(scaler.names, error.std(axis=0).tolist(), strict=True))
     return Scores(
-        r2=float(r2_score(*scaled, multioutput="uniform_average")),
-        r2_by_label={name: float(r2) for name, r2 in zip(scaler.names, by_label, strict=True)},
-        delta_V=float(np.std(potential_from_components(error[:, :n], sites))),
-        delta_alpha=float(np.std(error[:, n])) if error.shape[1] > n else None,
+        r2=float(np.mean([one for name, one in r2.items() if name != "mean"])),
+        r2_by_label=r2,
+        delta_V=float(np.std(potential_from_components(error[:, : scaler.components], sites))),
+        delta_alpha=deviation.get("alpha"),
         realizations=len(Y),
+        delta_mean=deviation.get("mean"),
     )

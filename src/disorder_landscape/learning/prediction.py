@@ -28,8 +28,8 @@ def predict(model: str | Path | TrainedModel, G: xr.Dataset) -> xr.Dataset:
     -------
     Dataset
         components (component) and potential (site) in meV, alpha in meV nm, each with a leading
-        realization where G has one. The potential has mean zero, which no label describes; alpha
-        is the configuration's where it is no label.
+        realization where G has one. The potential has mean zero unless the network predicts it
+        (`training.predict_mean`); alpha is the configuration's where it is no label.
 
     Raises
     ------
@@ -42,15 +42,14 @@ def predict(model: str | Path | TrainedModel, G: xr.Dataset) -> xr.Dataset:
     X = conductance_array(G)
     check_grid(G, dataset)
     Y = model.predict_labels(X)
+    columns = dict(zip(model.labels.names, Y.T, strict=True))
     components = Y[:, : dataset.components]
-    fixed = np.full(len(Y), dataset.alpha_range[0])
-    alpha = Y[:, dataset.components] if dataset.alpha_is_label else fixed
+    alpha = columns.get("alpha", np.full(len(Y), dataset.alpha_range[0]))
+    mean = columns.get("mean", np.zeros(len(Y)))
+    potential = potential_from_components(components, dataset.sites, mean)
     data = {
         "components": (("realization", "component"), components),
-        "potential": (
-            ("realization", "site"),
-            potential_from_components(components, dataset.sites),
-        ),
+        "potential": (("realization", "site"), potential),
         "alpha": ("realization", alpha),
     }
     coords = {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Self
 
@@ -60,18 +60,25 @@ def conductance_array(G: xr.Dataset) -> ConductanceArray:
     return X
 
 
-def label_names(components: int, alpha_is_label: bool) -> tuple[str, ...]:
-    """Return the names of the labels: c_1 … c_n, then alpha."""
+def label_names(
+    components: int, alpha_is_label: bool, mean_is_label: bool = False
+) -> tuple[str, ...]:
+    """Return the names of the labels: c_1 … c_n, then alpha, then mean."""
     names = [f"c_{n}" for n in range(1, components + 1)]
-    return (*names, "alpha") if alpha_is_label else tuple(names)
+    return (*names, *["alpha"] * alpha_is_label, *["mean"] * mean_is_label)
 
 
-def label_array(dataset: xr.Dataset, alpha_is_label: bool) -> FloatArray:
-    """Return the labels Y = (c₁ … c_n[, α]) in meV and meV nm, shape (realization, label)."""
-    Y = dataset["components"].transpose("realization", "component").to_numpy()
-    if alpha_is_label:
-        Y = np.column_stack([Y, dataset["alpha"].to_numpy()])
-    return Y.astype(np.float64)
+def label_array(dataset: xr.Dataset, names: Sequence[str]) -> FloatArray:
+    """Return the named labels, shape (realization, label), in meV and alpha in meV nm.
+
+    The paper's are Y = (c₁ … c_n[, α]); mean is the potential's spatial mean, in meV.
+    """
+    columns = list(dataset["components"].transpose("component", "realization").to_numpy())
+    if "alpha" in names:
+        columns.append(dataset["alpha"].to_numpy())
+    if "mean" in names:
+        columns.append(dataset["potential"].mean("site").to_numpy())
+    return np.column_stack(columns).astype(np.float64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +88,7 @@ class LabelScaler:
     Parameters
     ----------
     names : tuple of str
-        c_1 … c_n and alpha.
+        c_1 … c_n, alpha and mean.
     mean, std : array, shape (label,)
         In meV, for alpha in meV nm.
     """
@@ -107,7 +114,7 @@ class LabelScaler:
     @property
     def components(self) -> int:
         """How many of the labels are disorder components."""
-        return sum(name != "alpha" for name in self.names)
+        return sum(name.startswith("c_") for name in self.names)
 
     def to_dict(self) -> dict[str, Any]:
         """Return what JSON can hold, to the last bit."""

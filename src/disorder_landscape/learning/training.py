@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -22,6 +23,7 @@ from disorder_landscape.learning.checkpoints import (
     save_checkpoint,
 )
 from disorder_landscape.learning.curves import Epoch, plot_curves, write_curves
+from disorder_landscape.learning.ensembles import combine, member_configs
 from disorder_landscape.learning.examples import Examples, first, split
 from disorder_landscape.learning.metrics import Scores, score
 from disorder_landscape.learning.model import METRICS, TrainedModel, check_grid
@@ -44,9 +46,11 @@ def train(
     """Train a network on a dataset and write the model's folder (what it holds: `model`).
 
     Adam on the mean squared error of standard-scaled Y, in sets of epochs, the learning rate
-    divided by 10 from set to set. A training that was interrupted goes on after its last finished
-    epoch, with the numbers it would have had; one that is finished is left alone. The validation
-    data are the test realizations, as in the paper; nothing is chosen by them.
+    divided by 10 from set to set, or along a cosine; `training.networks` of them, each in a folder
+    of its own inside this one, if their mean is to predict. A training that was interrupted goes on
+    after its last finished epoch, with the numbers it would have had; one that is finished is left
+    alone. The validation data are the test realizations, as in the paper; nothing is chosen by
+    them.
 
     Parameters
     ----------
@@ -80,24 +84,50 @@ def train(
     training, test = split(dataset.sizes["realization"], config.training.test_fraction)
     training = first(training, config.training.realizations)
     X = conductance_array(dataset)
-    Y = label_array(dataset, config.dataset.alpha_is_label)
+    Y = label_array(dataset, names_of_labels(config))
     claim(folder, config, dataset, command)
     if (folder / METRICS).exists():
         if progress:
             tqdm.write(f"'{folder}' holds this very training, finished: nothing to do.")
         return Scores.from_dict(read_json(folder / METRICS))
 
-    examples = Examples(X[training], Y[training], config.dataset.components, config.training)
-    model, curves = _start_or_resume(folder, config, examples)
-
-    def scores() -> Scores:
+    def scores(model: TrainedModel) -> Scores:
         predicted = model.predict_labels(X[test])
         return score(Y[test], predicted, model.labels, config.dataset.sites)
 
+    if config.training.networks == 1:
+        examples = Examples(X[training], Y[training], config.dataset.components, config.training)
+        model, curves = _train_one(examples, config, folder, scores, progress)
+    else:
+        folders = [folder / f"network-{i + 1}" for i in range(config.training.networks)]
+        for member, one in zip(folders, member_configs(config), strict=True):
+            train(dataset, one, member, command, progress)
+        model, curves = combine(folders, config)
+        write_curves(folder / "curves.csv", curves)
+
+    final = scores(model)
+    model.save(folder)
+    for suffix in ("pdf", "png"):
+        plot_curves(folder / f"curves.{suffix}", curves)
+    write_json(folder / METRICS, final.to_dict())
+    drop_checkpoints(folder)
+    return final
+
+
+def _train_one(
+    examples: Examples,
+    config: Config,
+    folder: Path,
+    scores: Callable[[TrainedModel], Scores],
+    progress: bool,
+) -> tuple[TrainedModel, list[Epoch]]:
+    """Train a single network from where it stands to the end of its schedule."""
+    model, curves = _start_or_resume(folder, config, examples)
     steps = Steps(model, examples, config.training)
+    per_epoch = len(examples) * config.training.passes
     with tqdm(
-        total=sum(config.training.epochs) * len(examples),
-        initial=len(curves) * len(examples),
+        total=sum(config.training.epochs) * per_epoch,
+        initial=len(curves) * per_epoch,
         unit=" realizations",
         disable=not progress,
     ) as bar:
@@ -105,21 +135,14 @@ def train(
             bar.set_description(f"epoch {epoch}/{sum(config.training.epochs)}")
             started = time.perf_counter()
             loss = steps.take_epoch(epoch, bar)
-            r2 = scores().r2
+            r2 = scores(model).r2
             seconds = time.perf_counter() - started
             curves.append(
                 Epoch(epoch, set_, learning_rate(config.training, epoch), loss, r2, seconds)
             )
             save_checkpoint(folder, model.network, curves)
             write_curves(folder / "curves.csv", curves)
-
-    final = scores()
-    model.save(folder)
-    for suffix in ("pdf", "png"):
-        plot_curves(folder / f"curves.{suffix}", curves)
-    write_json(folder / METRICS, final.to_dict())
-    drop_checkpoints(folder)
-    return final
+    return model, curves
 
 
 @dataclass(frozen=True)
@@ -133,7 +156,9 @@ class Steps:
     def take_epoch(self, epoch: int, bar: Any) -> float:
         """Take one step per batch, in an order of their own; return the mean loss per example."""
         # Functions of seed and epoch alone, so that a resumed training sees the same.
-        order = np.random.default_rng([self.training.seed, epoch]).permutation(len(self.examples))
+        shuffle = np.random.default_rng([self.training.seed, epoch])
+        passes = [shuffle.permutation(len(self.examples)) for _ in range(self.training.passes)]
+        order = np.concatenate(passes)
         noise = np.random.default_rng([self.training.seed, epoch, 1])
         batch_size, network = self.training.batch_size, self.model.network
         total = 0.0
@@ -151,10 +176,16 @@ class Steps:
         return total / len(order)
 
 
+def names_of_labels(config: Config) -> tuple[str, ...]:
+    """Return the names of what a configuration's network predicts."""
+    dataset = config.dataset
+    return label_names(dataset.components, dataset.alpha_is_label, config.training.predict_mean)
+
+
 def _start_or_resume(
     folder: Path, config: Config, examples: Examples
 ) -> tuple[TrainedModel, list[Epoch]]:
-    names = label_names(config.dataset.components, config.dataset.alpha_is_label)
+    names = names_of_labels(config)
     labels = examples.fit_labels(names)
     inputs = examples.fit_inputs() if config.training.compress_inputs else None
     saved = load_checkpoint(folder)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 from tqdm import tqdm
@@ -80,7 +81,7 @@ def _result(run: PlannedRun, folder: Path) -> Result:
         test_realizations=metrics["realizations"],
         architecture=network.architecture,
         width_fraction=network.width_fraction,
-        weights=sum(int(weight.size) for weight in weights),
+        weights=sum(math.prod(weight.shape) for weight in weights),
         compress_inputs=training.compress_inputs,
         mirror=training.mirror,
         noise=training.noise,
