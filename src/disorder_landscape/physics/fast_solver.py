@@ -35,6 +35,8 @@ GROWTH_LIMIT = 1e7
 
 PairingFactors = Callable[[Nanowire, FloatArray], tuple[Any, Any]]
 """What `hamiltonian.pairing_factors` is, real or complex."""
+LeadSelfEnergies = Callable[[Nanowire, float, FloatArray], ComplexArray]
+"""What `leads.lead_self_energies` is, at any angle of the field."""
 
 
 class Problem(NamedTuple):
@@ -55,6 +57,7 @@ def prepare(
     B: FloatArray,
     omega: FloatArray,
     factors: PairingFactors = pairing_factors,
+    leads: LeadSelfEnergies = lead_self_energies,
 ) -> Problem:
     """Return the terms of all wires, with Σ(ω) of the parent superconductor from `factors`."""
     sites = wires[0].sites
@@ -63,7 +66,7 @@ def prepare(
     zeeman = np.outer([w.zeeman_per_tesla for w in wires] / hop, B)[:, :, None]
     phases = 2 * angle[:, None, None] * np.arange(sites)
     pairing = np.array([factors(w, omega) for w in wires])
-    sigma = np.array([[lead_self_energies(w, field, omega) for field in B] for w in wires])
+    sigma = np.array([[leads(w, field, omega) for field in B] for w in wires])
     for of_wire, phi in zip(sigma, angle, strict=True):
         for of_field in of_wire:
             rotate_spin(of_field, phi * (sites - 1))
