@@ -33,9 +33,9 @@ GROWTH_LIMIT = 1e7
 """Largest inverse pivot (in units of 1/t') up to which real elimination is trusted."""
 
 
-PairingFactors = Callable[[Nanowire, FloatArray], tuple[Any, Any]]
+PairingFactors = Callable[[Nanowire, Any], tuple[Any, Any]]
 """What `hamiltonian.pairing_factors` is, real or complex."""
-LeadSelfEnergies = Callable[[Nanowire, float, FloatArray], ComplexArray]
+LeadSelfEnergies = Callable[[Nanowire, float, Any], ComplexArray]
 """What `leads.lead_self_energies` is, at any angle of the field."""
 
 
@@ -55,7 +55,7 @@ def prepare(
     wires: Sequence[Nanowire],
     mu: FloatArray,
     B: FloatArray,
-    omega: FloatArray,
+    omega: FloatArray | ComplexArray,
     factors: PairingFactors = pairing_factors,
     leads: LeadSelfEnergies = lead_self_energies,
 ) -> Problem:

@@ -17,7 +17,7 @@ from scipy.linalg import solve_banded
 from disorder_landscape.physics.above_gap import GROWTH_LIMIT, retarded_pairing_factors
 from disorder_landscape.physics.compilation import compile_kernels
 from disorder_landscape.physics.fast_solver import Problem, prepare
-from disorder_landscape.physics.hamiltonian import ComplexArray
+from disorder_landscape.physics.hamiltonian import ComplexArray, pairing_factors
 from disorder_landscape.physics.parameters import FloatArray, Nanowire
 from disorder_landscape.physics.tilted_leads import tilted_lead_self_energies
 from disorder_landscape.physics.tilted_recursion import WIDTH, eliminate_inner_sites_tilted
@@ -92,29 +92,60 @@ def _end_green_functions(
     sigma : array, shape (wire, B, 1, omega, lead, charge, 2, 2)
         In units of t'.
     """
-    compile_kernels()
     leads = partial(tilted_lead_self_energies, theta=theta)
     p = prepare(wires, mu, B, omega, retarded_pairing_factors, leads)
-    hop = np.array([w.rotated_hopping for w in wires])
-    across = np.sin(theta) * np.outer([w.zeeman_per_tesla for w in wires] / hop, B)
-    x, z = np.cos(theta) * p.zeeman_x, np.cos(theta) * p.zeeman_z
-    field = np.stack([x, np.broadcast_to(across[..., None], x.shape), z], axis=-1)
-    M = np.empty((len(wires), B.size, mu.size * omega.size, 8, 8), dtype=np.complex128)
-    growth = np.empty(M.shape[:3])
-    _kernel(p, field, M, growth)
-    M = M.reshape(len(wires), B.size, mu.size, omega.size, 8, 8)
+    field = _rotated_field(p, wires, B, theta)
+    M, growth = _isolated_ends(p, field)
     sigma = p.sigma[:, :, None]
     for lead in range(2):
         for charge in range(2):
             at = slice(4 * lead + 2 * charge, 4 * lead + 2 * charge + 2)
             M[..., at, at] -= sigma[:, :, :, :, lead, charge]
-    bad = ~(growth.reshape(M.shape[:4]) < growth_limit**2)  # NaN too
+    bad = ~(growth < growth_limit**2)  # NaN too
     M[bad] = np.eye(8)
     G: ComplexArray = np.asarray(np.linalg.inv(M), dtype=np.complex128)
     for w, f, m, e in np.argwhere(bad):
         terms = p.kinetic[w, m], p.normal[w, e], p.anomalous[w, e]
         G[w, f, m, e] = _ends_by_pivoting(p.V[w], field[w, f], terms, p.sigma[w, f, e])
     return G, sigma
+
+
+def isolated_green_functions(
+    wires: Sequence[Nanowire], mu: FloatArray, B: FloatArray, z: ComplexArray, theta: float
+) -> ComplexArray:
+    """Return G of the ends of the wires without leads, shape (wire, B, mu, z, 8, 8), in 1/meV.
+
+    In the rotated frame, left end first, at energies z with |Re z| < Δ₀ and Im z > 0, where no
+    pivot can vanish.
+    """
+    p = prepare(wires, mu, B, z, pairing_factors, _no_leads)
+    M, _ = _isolated_ends(p, _rotated_field(p, wires, B, theta))
+    hop = np.array([w.rotated_hopping for w in wires]).reshape(-1, *[1] * 5)
+    return np.asarray(np.linalg.inv(M) / hop, dtype=np.complex128)
+
+
+def _no_leads(wire: Nanowire, B: float, z: ComplexArray) -> ComplexArray:
+    return np.zeros((z.size, 2, 2, 2, 2), dtype=np.complex128)
+
+
+def _rotated_field(
+    p: Problem, wires: Sequence[Nanowire], B: FloatArray, theta: float
+) -> FloatArray:
+    """Return the Zeeman term's components in the rotated frame, shape (wire, B, site, 3)."""
+    across = np.array([w.zeeman_per_tesla / w.rotated_hopping for w in wires])[:, None] * B
+    x, z = np.cos(theta) * p.zeeman_x, np.cos(theta) * p.zeeman_z
+    y = np.broadcast_to(np.sin(theta) * across[..., None], x.shape)
+    return np.stack([x, y, z], axis=-1)
+
+
+def _isolated_ends(p: Problem, field: FloatArray) -> tuple[ComplexArray, FloatArray]:
+    """Return M of the ends, (wire, B, mu, omega, 8, 8), and the largest squared inverse pivot."""
+    compile_kernels()
+    shape = (*field.shape[:2], p.kinetic.shape[1], p.normal.shape[1])
+    M = np.empty((*shape[:2], shape[2] * shape[3], 8, 8), dtype=np.complex128)
+    growth = np.empty(M.shape[:3])
+    _kernel(p, field, M, growth)
+    return M.reshape(*shape, 8, 8), growth.reshape(shape)
 
 
 @nb.njit(cache=True, parallel=True)
