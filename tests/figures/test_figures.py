@@ -30,6 +30,7 @@ SCRIPTS = {
     "figure_S5": "figure_S5_conductance_mu",
     "figure_S7": "figure_S7_visibility",
     "figure_S9": "figure_S9_pristine",
+    "figure_S10": "figure_S10_verification",
 }
 CONDUCTANCES = ("G_LL", "G_RR", "G_LR", "G_RL")
 
