@@ -178,7 +178,7 @@ def test_verify_reads_what_simulate_writes(verification, tmp_path):
         (["no.nc", "other.nc"], "there is no 'no.nc'"),
         (["prediction.nc", "no.nc"], "there is no 'no.nc'"),
         (["prediction.nc", "prediction.nc"], "lacks G_LL"),
-        (["other.nc", "prediction.nc"], "lacks G_LL"),
+        (["other.nc", "tilted.nc"], "lacks alpha"),
         (["other.nc", "tilted.nc", "--model", "nowhere"], "Argument model must be a folder"),
         (["prediction.nc", "other.nc", "--controls", 3], "Argument controls must"),
         (["prediction.nc", "other.nc", "--noise", -1], "Argument noise must"),

@@ -21,7 +21,7 @@ from disorder_landscape.physics import (
 from disorder_landscape.physics.leads import lead_self_energies
 from disorder_landscape.physics.quadrature import thermal_quadrature
 from disorder_landscape.physics.tilted_leads import tilted_lead_self_energies
-from disorder_landscape.physics.tilted_levels import isolated_levels
+from disorder_landscape.physics.tilted_levels import BASIS, isolated_wire
 from disorder_landscape.physics.transport import exact_average
 from random_wires import energies, fields, mus, random_wire, seeds
 
@@ -169,17 +169,18 @@ def test_a_level_of_the_inner_sites_switches_to_pivoting():
 
 
 @pytest.mark.parametrize(("seed", "theta"), [(1, 0.4), (2, np.pi / 2), (6, -2.0), (9, 1e-3)])
-def test_levels_and_what_the_ends_see_are_those_of_the_wire(seed, theta):
+def test_the_small_matrix_has_the_ends_green_function_of_the_wire(seed, theta):
     wire, mu, B = random_wire(seed, sites=100), np.array([0.2]), np.array([0.5])
     z = np.linspace(0.005, 0.08, 16) + 0.001j
     F = tilted_field.isolated_green_functions([wire], mu, B, z, theta)[0, 0, 0]
-    E, u = isolated_levels(z, F)
-    assert_allclose(E, -E[::-1], atol=1e-9)
+    A, u = isolated_wire(z, F)
+    assert_allclose(A, -A.T, atol=1e-9)
+    left_end = (BASIS @ u)[:4]  # which is not rotated
     for omega in (0.0123, 0.047):
         H = hamiltonian.wire_hamiltonian(wire, 0.2, 0.5, omega, theta)
         G = np.linalg.inv(omega * np.eye(len(H)) - H)
-        left = (u[:4] / (omega - E)) @ u[:4].conj().T  # the left end is not rotated
-        assert_allclose(left, G[:4, :4], atol=1e-6 * abs(G[:4, :4]).max())
+        ours = left_end @ np.linalg.inv(omega * np.eye(len(A)) - 1j * A) @ left_end.conj().T
+        assert_allclose(ours, G[:4, :4], atol=1e-6 * abs(G[:4, :4]).max())
 
 
 @pytest.mark.parametrize(

@@ -1,12 +1,13 @@
 """The conductance at finite temperature in a tilted field, in closed form.
 
 As in `finite_temperature`, but for one set (wire, μ, B) after the other and with dense matrices: at
-θ ≠ 0 nothing is real or symmetric. With the levels of the isolated wire (`tilted_levels`) and the
-leads' self-energies, linear in energy, Σ₀ + zΣ₁, the ends' Green's function is
+θ ≠ 0 nothing is real or symmetric. With H = iA of the isolated wire (`tilted_levels`) and the
+leads' self-energies, linear in energy, iΣ₀ + zΣ₁, the ends' Green's function is
 
-    G(z) = u (zN − K)⁻¹ u† = Σ_n a_n b_n†/(z − z_n),   N = 1 − u†Σ₁u,   K = E + u†Σ₀u.
+    G(z) = u (zN − iK)⁻¹ uᵀ = Σ_n a_n b_n†/(z − z_n),   N = 1 − uᵀΣ₁u,   K = A + uᵀΣ₀u,
 
-A probability Tr[Γ_b G_ba Γ_a G_ba†] then has the poles z_n with the residues
+with N and K real in the basis of `tilted_levels` by particle–hole symmetry, and z_n = −z_m* in
+pairs. A probability Tr[Γ_b G_ba Γ_a G_ba†] then has the poles z_n with the residues
 b_n†Γ_a G_ba(z_n*)†Γ_b a_n, and their conjugates. Their thermal averages are trigamma functions
 (`thermal_poles`). What is left of the true conductance is smooth, some 1e-6 e²/h; its polynomial
 through Chebyshev nodes is averaged too, and compared with the truth at further energies.
@@ -32,7 +33,7 @@ from disorder_landscape.physics.thermal_poles import (
     thermal_node_weights,
 )
 from disorder_landscape.physics.tilted_leads import tilted_lead_self_energies
-from disorder_landscape.physics.tilted_levels import isolated_levels
+from disorder_landscape.physics.tilted_levels import BASIS, isolated_wire
 
 NODES = (10, 16, 24)
 """Numbers of energies for the levels that are tried in turn."""
@@ -125,15 +126,13 @@ class _Average:
         wires, theta = [self.wire], self.theta
         F = tilted_field.isolated_green_functions(wires, mu, self.B, z, theta)[0, 0]
         bare = tilted_field.bare_conductance(wires, mu, self.B, self.real, theta)[0, :, 0]
-        some = [self._of_levels(*isolated_levels(z, F[m]), bare[m]) for m in range(mu.size)]
+        some = [self._of_wire(*isolated_wire(z, F[m]), bare[m]) for m in range(mu.size)]
         G, error = (np.array(part) for part in zip(*some, strict=True))
         return G, np.where(np.isfinite(G).all(axis=(1, 2)), error, np.inf)
 
-    def _of_levels(
-        self, E: FloatArray, u: ComplexArray, bare: FloatArray
-    ) -> tuple[FloatArray, float]:
+    def _of_wire(self, A: FloatArray, u: FloatArray, bare: FloatArray) -> tuple[FloatArray, float]:
         """Return G(V), shape (bias, 4), and its estimated error; bare: (real, 2, 4)."""
-        z, residues = self._poles(E, u)
+        z, residues = self._poles(A, u)
         signed = np.concatenate([self.real[:SMOOTH], -self.real[:SMOOTH]])
         checks = np.concatenate([self.real[SMOOTH:], -self.real[SMOOTH:]])
         rest = [
@@ -145,12 +144,15 @@ class _Average:
         shares = _trigamma(0.5 + 1j * (z - self.bias[:, None]) / unit) / (1j * unit)
         return 2 * (shares @ residues).real + self.smooth @ rest[0], float(error)
 
-    def _poles(self, E: FloatArray, u: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+    def _poles(self, A: FloatArray, u: FloatArray) -> tuple[ComplexArray, ComplexArray]:
         """Return the poles of the wire with its leads and their residues, shape (pole, 4)."""
-        N = np.eye(E.size) - u.conj().T @ self.slope @ u
-        K = np.diag(E) + u.conj().T @ self.sigma @ u
-        z, V = np.linalg.eig(np.linalg.solve(N, K))
-        a, b = (u @ V).T, np.linalg.solve(V, np.linalg.solve(N, u.conj().T))  # (pole, 8)
+        sigma, slope = (BASIS.conj().T @ s @ BASIS for s in (self.sigma, self.slope))
+        N = np.eye(len(A)) - u.T @ slope.real @ u
+        K = A + u.T @ sigma.imag @ u
+        eigenvalues, V = np.linalg.eig(np.linalg.solve(N, K))
+        z = 1j * eigenvalues
+        a = (BASIS @ (u @ V)).T  # (pole, 8)
+        b = np.linalg.solve(V, np.linalg.solve(N, u.T)) @ BASIS.conj().T
         products = (a[:, :, None] * b[:, None, :]).reshape(-1, 64)
         G = (1 / (z.conj()[:, None] - z) @ products).reshape(-1, 8, 8).conj()  # G(z*)*
         gamma = [1j * (s - s.conj().T) for s in (self.sigma, self.slope)]

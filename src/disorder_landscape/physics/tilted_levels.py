@@ -1,16 +1,16 @@
-"""The levels of the isolated wire in a tilted field, from its ends' Green's function.
+"""The isolated wire in a tilted field as a small matrix, from its ends' Green's function.
 
 Below the gap F(z) = Σ_n u_n u_n†/(z − E_n): rational but for the parent superconductor's continuum,
 which far levels stand for. X(z) = (z − H)⁻¹e, the wire's answer to a source on the 8 entries of
-its ends, spans a space in which Rayleigh–Ritz gives the levels. Its matrix elements follow from F
-alone, at nodes z_k above the axis:
+its ends, spans a space in which Rayleigh–Ritz gives H. The matrix elements follow from F alone, at
+nodes z_k above the axis:
 
     X_k†X_l = −(F_l − F_k†)/(z_l − z_k*),   X_k†H X_l = z_l X_k†X_l − F_k†,   e†X_l = F_l.
 
 (`levels` does the same with slopes, at real energies, in a real frame that θ ≠ 0 takes away.)
 Particle–hole symmetry gives the nodes −z_k* for nothing: with sources that are their own
 antiparticles F(−z*) = −F(z)*, and X_k − X(−z_k*) and i(X_k + X(−z_k*)) are their own antiparticles
-too, so that their overlaps are real and those with H imaginary.
+too, so that their overlaps are real and those with H imaginary: F(z) = u(z − iA)⁻¹uᵀ, all real.
 """
 
 from __future__ import annotations
@@ -31,10 +31,11 @@ def _majorana_basis() -> ComplexArray:
 
 
 BASIS = _majorana_basis()
+"""In which antiparticles are complex conjugates, unitary."""
 
 
-def isolated_levels(z: ComplexArray, F: ComplexArray) -> tuple[FloatArray, ComplexArray]:
-    """Return the levels of the isolated wire and what the ends see of them.
+def isolated_wire(z: ComplexArray, F: ComplexArray) -> tuple[FloatArray, FloatArray]:
+    """Return A and u, by which the ends' Green's function is BASIS u(z − iA)⁻¹uᵀ BASIS†.
 
     Parameters
     ----------
@@ -45,8 +46,8 @@ def isolated_levels(z: ComplexArray, F: ComplexArray) -> tuple[FloatArray, Compl
 
     Returns
     -------
-    E : array, shape (level,)
-        In meV.
+    A : array, shape (level, level)
+        Antisymmetric, in meV.
     u : array, shape (8, level)
     """
     F = BASIS.conj().T @ F @ BASIS
@@ -56,13 +57,12 @@ def isolated_levels(z: ComplexArray, F: ComplexArray) -> tuple[FloatArray, Compl
     overlap = -(F - bra) / (nodes - nodes.conj()[:, None])[..., None, None]  # (k, l, 8, 8)
     energy = nodes[:, None, None] * overlap - bra
     real, imaginary = _antiparticles(overlap).real, _antiparticles(energy).imag
-    seen = _antiparticles(F[None])[:8]
+    seen = _antiparticles(F[None]).real
     scale = 1 / np.sqrt(np.diag(real))
     value, vector = np.linalg.eigh(scale[:, None] * real * scale)
     kept = value > DROP * value[-1]
     chosen = scale[:, None] * vector[:, kept] / np.sqrt(value[kept])
-    E, mixed = np.linalg.eigh(1j * (chosen.T @ imaginary @ chosen))
-    return E, BASIS @ (seen @ chosen @ mixed)
+    return chosen.T @ imaginary @ chosen, seen @ chosen
 
 
 def _antiparticles(blocks: ComplexArray) -> ComplexArray:
