@@ -44,15 +44,10 @@ ANGLE = np.pi / 6
 """θ of the tilted field."""
 BARRIERS = (25.0, 10.0)
 """Other barriers in meV, left and right."""
-KINDS = {
-    "mu, B": "other $\\mu$, $B$",
-    "bias": r"other $V_\mathrm{bias}$",
-    "barrier": "barriers {0:g}, {1:g} meV",
-    "theta": r"$\theta$ = {2:g}°",
-}
-"""Kinds of measurements, and how they are printed."""
+KINDS = ("mu, B", "bias", "barrier", "theta")
+"""What is other than in the measurement that the network has seen."""
 ROWS = ("measured", "prediction", "wrong")
-MU, B = (0.22, 0.63), (0.31, 0.57, 0.83)
+MU, B = (0.22, 0.63), (0.37, 0.83)
 """Between the points of the network's grid, as parts of its μ and B."""
 OTHER_BIAS = np.array([-0.05, -0.03, -0.01, 0.01, 0.03, 0.05])
 """In meV."""
@@ -99,7 +94,10 @@ def _measure(wire: Nanowire, kind: str, config: Config) -> xr.Dataset:
     dataset = config.dataset
     mu, fields = dataset.mu_max * np.array(MU), dataset.B_max * np.array(B)
     if kind == "bias":  # of the network's settings all but the biases
-        mu, fields = dataset.mu[[0, dataset.mu_points // 2]], dataset.B[1 :: dataset.B_points // 3]
+        mu, fields = (
+            dataset.mu[:: dataset.mu_points // 2][:2],
+            dataset.B[:: dataset.B_points // 2][1:],
+        )
     return conductance(
         replace(wire, barrier=BARRIERS) if kind == "barrier" else wire,
         mu[:1] if kind == "theta" else mu,
@@ -153,7 +151,7 @@ def draw(data: xr.Dataset) -> Figure:
     _draw_ratios(axes, data)
     write(figure, 0.04, height - TOP, "(a)")
     angle, (left, right) = data.attrs["theta"], data.attrs["barriers"]
-    settings = rf"$\theta$ = {angle:g}°, barriers {left:g}, {right:g} meV, $\mu$ = 0"
+    settings = rf"$\theta$ = {angle:.0f}°, barriers {left:g}, {right:g} meV, $\mu$ = 0"
     write(figure, 0.04, bottom - BETWEEN + 0.33, f"(b)  {settings}")
     _draw_maps(figure, data, bottom - BETWEEN)
     return figure
@@ -172,8 +170,14 @@ def _draw_ratios(axes: Axes, data: xr.Dataset) -> None:
             x, data["ratio"][i], marker, color=PREDICTION, ms=4, label=f"prediction ({letter})"
         )
     axes.axhline(1.0, color="0.3", lw=0.6, dashes=(4, 2))
-    angle, barriers = data.attrs["theta"], data.attrs["barriers"]
-    axes.set_xticks(range(kinds), [text.format(*barriers, angle) for text in KINDS.values()])
+    left, right = data.attrs["barriers"]
+    names = (
+        "other $\\mu$ and $B$",
+        r"other $V_\mathrm{bias}$",
+        f"barriers {left:g}, {right:g} meV",
+        rf"$\theta$ = {data.attrs['theta']:.0f}°",
+    )
+    axes.set_xticks(range(kinds), names)
     axes.set(yscale="log", xlim=(-0.5, kinds - 0.5), ylabel="mismatch relative to\nwrong disorder")
     low = min(float(data["ratio"].min()), float(data["wrong_ratio"].min()))
     axes.set_ylim(0.6 * low, 12.0)

@@ -139,7 +139,7 @@ class FiguresConfig(_Section):
     verification_controls: Annotated[int, Field(ge=19)] = 19
     """With how many wires of wrong disorder Fig. S10 compares."""
     tilted_B_points: Positive = 41
-    """Of its maps, in a tilted field, which takes a hundred times longer to simulate."""
+    """Of its maps, in a tilted field, which takes fifty times longer to simulate."""
     bias_max: Annotated[float, Field(gt=0, le=1)] = 0.04
     """The maps reach from minus this V_bias to this, in meV."""
 

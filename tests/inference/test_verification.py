@@ -61,7 +61,7 @@ def test_the_truth_passes_at_settings_of_every_kind():
         result["ratio"], result["mismatch"] / result["control_mismatch"].median("control")
     )
     done, in_all = (list(numbers) for numbers in zip(*told, strict=True))
-    assert sum(done) == in_all[0] == in_all[-1] == (1 + CONTROLS) * (2 * 13 * 4 + 1)
+    assert sum(done) == in_all[0] == in_all[-1] == (1 + CONTROLS) * (2 * (13 + 9) * 4 + 1)
 
 
 def test_exact_knowledge_leaves_no_mismatch():
@@ -94,9 +94,9 @@ def test_the_mean_of_V_is_found():
     shifted = replace(TRUE, potential=TRUE.potential - TRUE.potential.mean() + 0.02)
     result = verify(prediction_of(TRUE), measure(shifted))
     assert result["shift"] == pytest.approx(0.02)
-    assert result["mismatch"].max() < 1e-8
+    assert result["ratio"].max() < 1e-3
     without = verify(prediction_of(TRUE), measure(shifted), shifts=[0.0])
-    assert (without["mismatch"] > 100 * result["mismatch"]).all()
+    assert without["ratio"].min() > 0.05
 
 
 def test_controls_are_those_of_the_seed_and_of_the_model():
@@ -170,7 +170,6 @@ def lacking(name):
         ({"measurements": changed(barrier="high")}, "must state two barriers"),
         ({"measurements": changed(theta=30.0)}, "theta must be a number from -6.28"),
         ({"measurements": changed(temperature=-1.0)}, "temperature must be"),
-        ({"measurements": changed() * np.nan}, "it lacks theta"),
         ({"measurements": (changed() * np.nan).assign_attrs(changed().attrs)}, "finite numbers"),
         ({"prediction": xr.Dataset()}, "prediction must hold the potential"),
         ({"prediction": None}, "prediction must hold the potential"),

@@ -10,6 +10,8 @@ from disorder_landscape.physics.parameters import FloatArray
 
 SIGNIFICANCE = 0.05
 """Largest p-value of a prediction that passes."""
+LEAST_SIGNAL = 0.1
+"""Part of the mismatch of wrong disorder that must not be noise in one channel at least."""
 _TINY = np.finfo(float).tiny
 
 
@@ -60,7 +62,7 @@ def comparison(mismatch: FloatArray, shift: FloatArray, noise: float) -> xr.Data
         "p_value": ((), p, {"units": "1"}),
     }
     attrs = {"noise": noise, "verdict": _verdict(score[0], as_close, controls, p)}
-    if not weights(typical, noise).any():
+    if weights(typical, noise).max() < LEAST_SIGNAL:
         attrs["verdict"] = "Nothing can be said: wrong disorder differs by no more than the noise."
     return xr.Dataset(data, coords={"channel": list(CONDUCTANCES)}, attrs=attrs)
 

@@ -32,6 +32,8 @@ from disorder_landscape.physics.transport import Progress, conductance
 
 SHIFTS = np.linspace(-3 * MEAN_STD, 3 * MEAN_STD, 13)
 """Means of V in meV that are tried; the steps are about kT."""
+FINER = np.linspace(-0.8, 0.8, 9)
+"""Then those around the best of them, in units of the step: conductances change within kT."""
 CONTROLS = 50
 
 
@@ -64,7 +66,8 @@ def verify(
         Disorder model of the network, from which controls are drawn; by default the paper's with
         the prediction's number of sites and of components.
     shifts : array, shape (shift,)
-        Means of V in meV that are tried, increasing; 0 takes the potentials as they are.
+        Means of V in meV that are tried, increasing, with finer steps around the best one then;
+        0 takes the potentials as they are.
     progress : callable, optional
         Told how many pairs (μ, B) have just been simulated, and how many there are in all.
 
@@ -147,7 +150,8 @@ def _mean_squares(
     """Return mean squared differences in (e²/h)², (wire, measurement, channel), and the shifts."""
     tilted = np.array([m.theta != 0 for m in measured])
     deciding = tilted == tilted.all()
-    tries = np.where(deciding, shifts.size, 1)
+    finer = FINER * np.diff(shifts).min() if shifts.size > 1 else np.empty(0)
+    tries = np.where(deciding, shifts.size + finer.size, 1)
     in_all = sum(
         n * len(wires) * m.mu.size * m.B.size for n, m in zip(tries, measured, strict=True)
     )
@@ -156,45 +160,38 @@ def _mean_squares(
         if progress is not None:
             progress(done, in_all)
 
-    by_shift = np.stack(
-        [
-            _of_measurement(wires, measured[i], shifts, told)
-            for i in np.flatnonzero(deciding).tolist()
-        ],
-        axis=2,
-    )
-    typical = np.sqrt(np.median(by_shift[1:], axis=(0, 1)))
-    best = scores(by_shift, typical, noise).argmin(axis=1)
+    first = [m for m, decides in zip(measured, deciding, strict=True) if decides]
+    found = np.array([_of_wire(wire, first, shifts, told) for wire in wires])
+    typical = np.sqrt(np.median(found[1:], axis=(0, 1)))
     squares = np.empty((len(wires), len(measured), len(CONDUCTANCES)))
-    squares[:, deciding] = by_shift[np.arange(len(wires)), best]
-    for i in np.flatnonzero(~deciding).tolist():
-        for w, wire in enumerate(wires):
-            shift = shifts[best[w : w + 1]]
-            squares[w, i] = _of_measurement([wire], measured[i], shift, told)[0, 0]
-    return squares, shifts[best]
+    best = np.empty(len(wires))
+    for w, wire in enumerate(wires):
+        coarse = shifts[scores(found[w], typical, noise).argmin()]
+        tried = np.append(shifts, coarse + finer)
+        further = _of_wire(wire, first, coarse + finer, told)
+        at_tried = np.concatenate([found[w], further])
+        chosen = scores(at_tried, typical, noise).argmin()
+        best[w], squares[w, deciding] = tried[chosen], at_tried[chosen]
+        others = [m for m, decides in zip(measured, deciding, strict=True) if not decides]
+        squares[w, ~deciding] = _of_wire(wire, others, best[w : w + 1], told)[0]
+    return squares, best
 
 
-def _of_measurement(
-    wires: Sequence[Nanowire],
-    measured: Measurement,
+def _of_wire(
+    wire: Nanowire,
+    measured: Sequence[Measurement],
     shifts: FloatArray,
     told: Callable[[int], None],
 ) -> FloatArray:
-    """Return mean squared differences from one measurement, shape (wire, shift, channel)."""
-    squares = np.empty((len(wires), shifts.size, len(CONDUCTANCES)))
-    shifted = np.round(measured.mu - shifts[:, None], 9)  # V + δ at μ is V at μ − δ
-    mu, back = np.unique(shifted, return_inverse=True)
-    for w, wire in enumerate(wires):
-        found = conductance(
-            replace(wire, barrier=measured.barrier),
-            mu,
-            measured.B,
-            measured.bias,
-            measured.temperature,
-            theta=measured.theta,
-        )
+    """Return mean squared differences of a wire, shape (shift, measurement, channel)."""
+    squares = np.empty((shifts.size, len(measured), len(CONDUCTANCES)))
+    for i, m in enumerate(measured if shifts.size else []):
+        shifted = np.round(m.mu - shifts[:, None], 9)  # V + δ at μ is V at μ − δ
+        mu, back = np.unique(shifted, return_inverse=True)
+        here = replace(wire, barrier=m.barrier)
+        found = conductance(here, mu, m.B, m.bias, m.temperature, theta=m.theta)
         for c, name in enumerate(CONDUCTANCES):
             simulated = found[name].to_numpy()[back.reshape(shifted.shape)]
-            squares[w, :, c] = ((simulated - measured.G[..., c]) ** 2).mean(axis=(1, 2, 3))
-        told(shifted.size * measured.B.size)
+            squares[:, i, c] = ((simulated - m.G[..., c]) ** 2).mean(axis=(1, 2, 3))
+        told(shifted.size * m.B.size)
     return squares

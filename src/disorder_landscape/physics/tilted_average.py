@@ -16,10 +16,11 @@ through Chebyshev nodes is averaged too, and compared with the truth at further 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
-from threadpoolctl import threadpool_limits
+from threadpoolctl import ThreadpoolController
 
 from disorder_landscape.physics import finite_temperature, tilted_field
 from disorder_landscape.physics.hamiltonian import ComplexArray
@@ -92,7 +93,9 @@ def thermal_conductance(
             missing = np.flatnonzero(~(error[w, :, f] <= TOLERANCE))
             if missing.size:
                 energies[w, missing, f] += nodes + SMOOTH + CHECKS
-                with threadpool_limits(1, "blas"):  # the matrices are too small to be shared
+                with _controller().limit(
+                    limits=1, user_api="blas"
+                ):  # the matrices are too small to be shared
                     found, estimate = average(mu[missing], nodes)
                 better = estimate < error[w, missing, f]
                 G[w, missing[better], f] = found[better]
@@ -164,6 +167,12 @@ class _Average:
             for out, into in PROBABILITIES
         ]
         return z, np.asarray(np.array(found).T @ WEIGHTS.T)
+
+
+@cache
+def _controller() -> ThreadpoolController:
+    """Return what knows the process's libraries: to look for them takes milliseconds."""
+    return ThreadpoolController()
 
 
 def _on_the_ends(sigma: ComplexArray) -> ComplexArray:

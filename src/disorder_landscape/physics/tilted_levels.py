@@ -62,7 +62,8 @@ def isolated_wire(z: ComplexArray, F: ComplexArray) -> tuple[FloatArray, FloatAr
     value, vector = np.linalg.eigh(scale[:, None] * real * scale)
     kept = value > DROP * value[-1]
     chosen = scale[:, None] * vector[:, kept] / np.sqrt(value[kept])
-    return chosen.T @ imaginary @ chosen, seen @ chosen
+    A = chosen.T @ imaginary @ chosen
+    return (A - A.T) / 2, seen @ chosen
 
 
 def _antiparticles(blocks: ComplexArray) -> ComplexArray:

@@ -59,7 +59,7 @@ def conductance(
         Told how many pairs (μ, B) have just been done, and how many there are in all.
     theta : float
         Angle of the field relative to the wire in radians, θ of Eq. S1. All but 0, the paper's,
-        take a route that is some hundred times slower.
+        take a route that is some fifty times slower.
 
     Returns
     -------
