@@ -23,6 +23,7 @@ from disorder_landscape import Nanowire, conductance, verify
 from disorder_landscape.config import Config
 from disorder_landscape.inference.verdict import scores
 from disorder_landscape.inference.verification import control_wires
+from disorder_landscape.physics.disorder import MEAN_STD
 from disorder_landscape.physics.labels import CONDUCTANCES
 from plotting import (
     FULL_WIDTH,
@@ -53,7 +54,7 @@ OTHER_BIAS = np.array([-0.05, -0.03, -0.01, 0.01, 0.03, 0.05])
 """In meV."""
 MARKERS = "osD^vP"
 
-LEFT, RIGHT, GAP, BARS = 0.74, 0.1, 0.06, 0.42
+LEFT, RIGHT, GAP, BARS = 0.74, 0.1, 0.06, 0.52
 """Margins, gap between maps, and room for colour bars, in inches."""
 TOP, SCATTER, BETWEEN, HEIGHT = 0.1, 1.75, 0.72, 0.95
 """Room above, height of (a), room between (a) and (b), and height of a map, in inches."""
@@ -76,13 +77,23 @@ def data(request: Request) -> xr.Dataset:
         prediction = table.isel(realization=i, row=1, drop=True)
         true = _wire(table, i, 0)
         measurements = [_measure(true, kind, config) for kind in KINDS]
-        controls = config.figures.verification_controls
-        result = verify(prediction, measurements, controls=controls, config=config.dataset)
+        result = verify(
+            prediction,
+            measurements,
+            controls=config.figures.verification_controls,
+            config=config.dataset,
+            shifts=_shifts(config.figures.verification_shifts),
+        )
         verified.append(_by_kind(result))
     panel_a = xr.concat(verified, "realization").assign_coords(realization=chosen["realization"])
     return xr.merge([panel_a, _maps(table, config)]).assign_attrs(
         barriers=BARRIERS, theta=float(np.degrees(ANGLE))
     )
+
+
+def _shifts(count: int) -> np.ndarray:
+    """Return means of V in meV to try, from minus to plus three standard deviations; one is 0."""
+    return 3 * MEAN_STD * (np.arange(count) - (count - 1) / 2) / max((count - 1) / 2, 1)
 
 
 def _wire(table: xr.Dataset, i: int, row: int) -> Nanowire:
@@ -201,7 +212,7 @@ def _draw_maps(figure: Figure, data: xr.Dataset, top: float) -> None:
             bar = colour_bar(figure, place, *conductance_scale(G), G, 1.0 if local else 1e-3)
             keep_labels_inside(bar.ax.xaxis)
             unit = "$G$ [$e^2/h$]" if local else r"$G$ [$10^{-3}\,e^2/h$]"
-            write(figure, left + width / 2, bottom - 0.36 - 0.29, unit, ha="center")
+            write(figure, left + width / 2, bottom - 0.36 - 0.31, unit, ha="center")
     outer_labels(panels, "B", "bias")
     label_rows(panels, ROWS, "bias")
 

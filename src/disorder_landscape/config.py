@@ -138,6 +138,8 @@ class FiguresConfig(_Section):
     """Fig. S9 is one wire only, and the same at every preset unless these are set."""
     verification_controls: Annotated[int, Field(ge=19)] = 19
     """With how many wires of wrong disorder Fig. S10 compares."""
+    verification_shifts: Positive = 7
+    """How many means of V it tries for each wire."""
     tilted_B_points: Positive = 41
     """Of its maps, in a tilted field, which takes fifty times longer to simulate."""
     bias_max: Annotated[float, Field(gt=0, le=1)] = 0.04
