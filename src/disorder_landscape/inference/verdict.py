@@ -10,7 +10,7 @@ from disorder_landscape.physics.parameters import FloatArray
 
 SIGNIFICANCE = 0.05
 """Largest p-value of a prediction that passes."""
-LEAST_SIGNAL = 0.1
+LEAST_SIGNAL = 0.5
 """Part of the mismatch of wrong disorder that must not be noise in one channel at least."""
 _TINY = np.finfo(float).tiny
 
@@ -63,7 +63,7 @@ def comparison(mismatch: FloatArray, shift: FloatArray, noise: float) -> xr.Data
     }
     attrs = {"noise": noise, "verdict": _verdict(score[0], as_close, controls, p)}
     if weights(typical, noise).max() < LEAST_SIGNAL:
-        attrs["verdict"] = "Nothing can be said: wrong disorder differs by no more than the noise."
+        attrs["verdict"] = "Nothing can be said: the noise hides what wrong disorder would change."
     return xr.Dataset(data, coords={"channel": list(CONDUCTANCES)}, attrs=attrs)
 
 
