@@ -67,6 +67,10 @@ def test_simulate_draws_the_same_potential_for_the_same_seed(monkeypatch, capsys
         (["--alpha", "nan"], "Argument alpha must"),
         (["--g", "1000"], "Argument g must be a number from 0 to 100, but it is 1000."),
         (["--temperature", "-0.1"], "Argument temperature must"),
+        (["--theta", "400"], "Argument theta must be a number from -360 to 360 degrees"),
+        (["--barrier", "high"], "Argument barrier must be a number in meV, or two like 15,12"),
+        (["--barrier", "1,2,3"], "Argument barrier must be a number in meV, or two like 15,12"),
+        (["--barrier", "1,2000"], "Argument barrier must be a number from -1000 to 1000 meV"),
         (["--temperature", "2", "--solver", "kwant"], "keep |bias| + 10 kT below the gap"),
         (["--bias", "0.13", "--temperature", "0"], "Argument bias must lie between"),
         (["--bias", "0.1,0.0"], "Argument bias must be a number or an increasing list"),
@@ -132,6 +136,66 @@ def test_bad_configurations_are_one_sentence(monkeypatch, capsys, tmp_path, comm
     assert not (tmp_path / "build").exists()
 
 
+@pytest.fixture
+def verification(monkeypatch, capsys, tmp_path):
+    """Run verify on a prediction and on measurements that simulate has written."""
+    monkeypatch.chdir(tmp_path)
+    settings = [*SMALL[:2], "--mu", "0.1,0.3", "--B", "0.2,0.6", "--bias=-0.03,0.01"]
+    wire = ["simulate", "--seed", 3, "--components", 3, *settings]
+    other = ["--barrier", "20,5", "-o", "other.nc"]
+    assert landscape(monkeypatch, capsys, *wire, *other)[0] == 0
+    tilted = ["--theta", 30, "--temperature", 0.04, "-o", "tilted.nc"]
+    assert landscape(monkeypatch, capsys, *wire, *tilted)[0] == 0
+    V = xr.load_dataset("other.nc", engine="h5netcdf")["potential"]
+    data = {"potential": V, "components": ("component", np.zeros(3)), "alpha": 8.0}
+    xr.Dataset(data).to_netcdf("prediction.nc", engine="h5netcdf")
+    return lambda *arguments: landscape(monkeypatch, capsys, "verify", *arguments)
+
+
+def test_verify_reads_what_simulate_writes(verification, tmp_path):
+    tilted = xr.load_dataset("tilted.nc", engine="h5netcdf")
+    assert tilted.attrs["theta"] == pytest.approx(np.pi / 6)
+    other = xr.load_dataset("other.nc", engine="h5netcdf")
+    assert other.attrs["barrier"].tolist() == [20, 5]
+    expected = conductance(
+        Nanowire(other["potential"], barrier=(20, 5)), [0.1, 0.3], [0.2, 0.6], [-0.03, 0.01]
+    )
+    np.testing.assert_array_equal(other["G_RL"], expected["G_RL"])
+    files = ["prediction.nc", "other.nc", "tilted.nc"]
+    code, out, err = verification(*files, "--controls", 19, "-o", "verified.nc")
+    assert code == 0, err
+    for said in (*files[1:], "G_LR", "The prediction passes: ", "wrote verified.nc"):
+        assert said in out
+    verified = xr.load_dataset("verified.nc", engine="h5netcdf")
+    assert verified["mismatch"].max() < 1e-9  # the mean of V, 0 at --shifts, is among those tried
+    assert verified["measurement"].to_numpy().tolist() == files[1:]
+    assert verified.attrs["command"].startswith("landscape verify prediction.nc")
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (["no.nc", "other.nc"], "there is no 'no.nc'"),
+        (["prediction.nc", "no.nc"], "there is no 'no.nc'"),
+        (["prediction.nc", "prediction.nc"], "lacks G_LL"),
+        (["other.nc", "tilted.nc"], "lacks alpha"),
+        (["other.nc", "tilted.nc", "--model", "nowhere"], "Argument model must be a folder"),
+        (["prediction.nc", "other.nc", "--controls", 3], "Argument controls must"),
+        (["prediction.nc", "other.nc", "--noise", -1], "Argument noise must"),
+        (["prediction.nc", "other.nc", "--shifts", "x"], "Argument shifts must"),
+        (["prediction.nc", "other.nc", "-o", "other.nc"], "Argument output must be another file"),
+    ],
+)
+def test_what_cannot_be_verified_is_one_sentence(verification, tmp_path, options, says):
+    before = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    code, out, err = verification(*options)
+    assert code == 2
+    assert says in err
+    assert err.count("\n") == 1
+    assert out == ""
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
 def test_training_without_a_dataset_says_what_to_run(monkeypatch, capsys, tmp_path):
     code, _, err = landscape(
         monkeypatch, capsys, "train", "--config", "configs/smoke.toml", "--build", tmp_path
@@ -149,7 +213,7 @@ def test_a_folder_that_cannot_be_made_is_one_sentence(monkeypatch, capsys, tmp_p
 
 
 def test_every_command_helps_with_an_example(monkeypatch, capsys):
-    commands = ["simulate", "generate", "status", "train", "evaluate", "predict", "bench"]
+    commands = ["simulate", "generate", "status", "train", "evaluate", "predict", "verify", "bench"]
     for command in commands:
         code, out, _ = landscape(monkeypatch, capsys, command, "--help")
         assert code == 0

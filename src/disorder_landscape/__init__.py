@@ -13,6 +13,7 @@ from disorder_landscape.physics.topology import topological_visibility
 from disorder_landscape.physics.transport import conductance
 
 if TYPE_CHECKING:
+    from disorder_landscape.inference.verification import verify
     from disorder_landscape.learning.prediction import predict
 
 __all__ = [
@@ -22,13 +23,18 @@ __all__ = [
     "conductance_gradient",
     "predict",
     "topological_visibility",
+    "verify",
 ]
 
 
 def __getattr__(name: str) -> Any:
-    """Import what needs scikit-learn only when it is asked for."""
+    """Import what needs scikit-learn or pydantic only when it is asked for."""
     if name == "predict":
         from disorder_landscape.learning.prediction import predict
 
         return predict
+    if name == "verify":
+        from disorder_landscape.inference.verification import verify
+
+        return verify
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

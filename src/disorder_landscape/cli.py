@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -10,7 +11,7 @@ from typing import Annotated
 
 import typer
 
-from disorder_landscape.arguments import ArgumentError, require
+from disorder_landscape.arguments import ArgumentError, number_in, require
 
 app = typer.Typer(
     help="Simulate disordered Majorana nanowires, and read their disorder off their conductance.",
@@ -61,10 +62,15 @@ def simulate(
     g: Annotated[float, typer.Option(help="Lande g-factor.")] = 25.0,
     gamma: Annotated[float, typer.Option(help="Coupling to the superconductor in meV.")] = 0.15,
     delta0: Annotated[float, typer.Option(help="Gap of the superconductor in meV.")] = 0.12,
-    barrier: Annotated[float, typer.Option(help="Barrier on both end sites in meV.")] = 15.0,
+    barrier: Annotated[
+        str, typer.Option(help="Barrier on the end sites in meV: one number, or left,right.")
+    ] = "15",
     temperature: Annotated[float, typer.Option(help="In K; 0 is the bare conductance.")] = 0.05,
     mu: Annotated[str, typer.Option(help="Chemical potentials in meV.")] = "0",
     B: Annotated[str, typer.Option("--B", help="Magnetic fields in T.")] = "0:0.8:81",
+    theta: Annotated[
+        float, typer.Option(help="Angle of the field relative to the wire in degrees.")
+    ] = 0.0,
     bias: Annotated[str, typer.Option(help="Bias voltages in meV.")] = "-0.04:0.04:81",
     solver: Annotated[str, typer.Option(help="fast, or kwant (the reference).")] = "fast",
     output: Annotated[Path, typer.Option("--output", "-o", help="netCDF file.")] = Path("wire.nc"),
@@ -102,7 +108,9 @@ def simulate(
         V = np.zeros(sites)
     else:
         V = disorder_realization(np.random.default_rng(seed), components, sites)[1]
-    wire = Nanowire(V, alpha=alpha, g=g, gamma=gamma, delta0=delta0, barrier=(barrier, barrier))
+    barriers = simulation.parse_barrier(barrier)
+    wire = Nanowire(V, alpha=alpha, g=g, gamma=gamma, delta0=delta0, barrier=barriers)
+    angle = math.radians(number_in("theta", theta, -360.0, 360.0, "degrees"))
     grids = {
         name: simulation.parse_grid(name, text)
         for name, text in {"mu": mu, "B": B, "bias": bias}.items()
@@ -113,7 +121,7 @@ def simulate(
             bar.total = in_all
             bar.update(done)
 
-        result = simulation.simulate_wire(wire, grids, temperature, solver, progress)
+        result = simulation.simulate_wire(wire, grids, temperature, solver, angle, progress)
     write_dataset(result, output, provenance(" ".join(["landscape", *sys.argv[1:]])))
     if plot is not None:
         simulation.plot_simulation(result, plot)
@@ -210,6 +218,68 @@ def predict(
     Y = predict_labels(model, read_dataset(measurement, CONDUCTANCES)[list(CONDUCTANCES)])
     write_dataset(Y, output, provenance(" ".join(["landscape", *sys.argv[1:]])))
     print(f"wrote {output}")
+
+
+@app.command()
+def verify(
+    prediction: Annotated[Path, typer.Argument(help="netCDF file of `landscape predict`.")],
+    measurements: Annotated[
+        list[Path],
+        typer.Argument(help="netCDF files with G_LL ... G_RL at settings the network never saw."),
+    ],
+    model: Annotated[
+        Path | None,
+        typer.Option(help="Folder of the model that predicted: its disorder is the control."),
+    ] = None,
+    noise: Annotated[float, typer.Option(help="Error of the measured G in e^2/h.")] = 0.0,
+    controls: Annotated[int, typer.Option(help="Wires with wrong disorder, 19 or more.")] = 50,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the wrong disorder.")] = 0,
+    shifts: Annotated[
+        str, typer.Option(help="Means of V in meV to try, which the network does not know.")
+    ] = "-0.03:0.03:13",
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="netCDF file.")] = None,
+) -> None:
+    """Compare measurements with the predicted wire, and with wires of wrong disorder.
+
+    A measurement states theta (radians), barrier (left and right, meV) and temperature (K) as
+    attributes, as landscape simulate writes them. It may have any grid of mu, B and bias: landscape
+    simulate --seed 1 --mu 0.1,0.3 --B 0.2:0.8:7 --bias -0.03,0.01 --theta 30 --barrier 15,12 -o
+    other.nc
+
+    Example: landscape verify Y.nc other.nc --model data_small/models/five_components_and_alpha
+    """
+    from tqdm import tqdm
+
+    from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
+    from disorder_landscape.files import check_writable
+    from disorder_landscape.inference.verdict import table
+    from disorder_landscape.inference.verification import verify as compare
+    from disorder_landscape.learning.model import load_model_config
+    from disorder_landscape.physics.labels import CONDUCTANCES
+    from disorder_landscape.simulation import parse_grid
+
+    if output is not None:
+        check_writable("output", output)
+        read = {path.resolve() for path in (prediction, *measurements)}
+        must = "be another file than those that are read"
+        require(output.resolve() not in read, "output", must, f"it is '{output}'")
+    config = None if model is None else load_model_config(model).dataset
+    predicted = read_dataset(prediction, ("potential", "alpha"))
+    measured = [read_dataset(path, CONDUCTANCES) for path in measurements]
+    tried = parse_grid("shifts", shifts)
+    with tqdm(unit=" settings", delay=1, desc="verify") as bar:
+
+        def progress(done: int, in_all: int) -> None:
+            bar.total = in_all
+            bar.update(done)
+
+        result = compare(predicted, measured, noise, controls, seed, config, tried, progress)
+    result = result.assign_coords(measurement=[str(path) for path in measurements])
+    if output is not None:
+        write_dataset(result, output, provenance(" ".join(["landscape", *sys.argv[1:]])))
+    print("\n".join(table(result)))
+    if output is not None:
+        print(f"wrote {output}")
 
 
 @app.command()

@@ -166,6 +166,12 @@ class FiguresConfig(_Section):
     pristine_mu_points: Positive = 121
     pristine_B_points: Positive = 161
     """Fig. S9 is one wire only, and the same at every preset unless these are set."""
+    verification_controls: Annotated[int, Field(ge=19)] = 19
+    """With how many wires of wrong disorder Fig. S10 compares."""
+    verification_shifts: Positive = 7
+    """How many means of V it tries for each wire."""
+    tilted_B_points: Positive = 41
+    """Of its maps, in a tilted field, which takes fifty times longer to simulate."""
     bias_max: Annotated[float, Field(gt=0, le=1)] = 0.04
     """The maps reach from minus this V_bias to this, in meV."""
 

@@ -74,11 +74,29 @@ def parse_grid(name: str, text: str) -> FloatArray:
         raise ArgumentError(name, must, f"it is '{text}'") from None
 
 
+def parse_barrier(text: str) -> tuple[float, float]:
+    """Return the left and the right barrier that "15" or "15,12" describes.
+
+    Raises
+    ------
+    ArgumentError
+        If the text is something else.
+    """
+    try:
+        values = [float(part) for part in text.split(",")]
+        left, right = values if len(values) > 1 else 2 * values
+    except ValueError:
+        must = "be a number in meV, or two like 15,12"
+        raise ArgumentError("barrier", must, f"it is '{text}'") from None
+    return left, right
+
+
 def simulate_wire(
     wire: Nanowire,
     grids: Mapping[str, FloatArray],
     temperature: float,
     solver: str,
+    theta: float = 0.0,
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Return conductance, T_IV and potential of a wire in one dataset.
@@ -91,6 +109,8 @@ def simulate_wire(
     temperature : float
         In K.
     solver : {"fast", "kwant"}
+    theta : float
+        Angle of the field relative to the wire in radians.
     progress : callable, optional
         As in `conductance`.
     """
@@ -102,8 +122,11 @@ def simulate_wire(
         temperature=temperature,
         solver=solver,
         progress=progress,
+        theta=theta,
     )
-    result["T_IV"] = topological_visibility(wire, grids["mu"], grids["B"], solver=solver)
+    result["T_IV"] = topological_visibility(
+        wire, grids["mu"], grids["B"], solver=solver, theta=theta
+    )
     result["potential"] = ("site", wire.potential)
     for name in ("alpha", "mass", "lattice", "g", "gamma", "delta0", "barrier", "lead_mu"):
         result.attrs[name] = getattr(wire, name)

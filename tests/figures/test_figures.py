@@ -35,6 +35,7 @@ SCRIPTS = {
     "figure_S7": "figure_S7_visibility",
     "figure_S8": "figure_S8_visibility_ten",
     "figure_S9": "figure_S9_pristine",
+    "figure_S10": "figure_S10_verification",
 }
 CONDUCTANCES = ("G_LL", "G_RR", "G_LR", "G_RL")
 
@@ -253,6 +254,30 @@ def test_alpha_is_drawn_as_predicted_with_its_error(drawn, evaluation):
     np.testing.assert_array_equal(points.get_xdata(), evaluation["alpha"])
     np.testing.assert_array_equal(points.get_ydata(), evaluation["alpha_predicted"])
     assert f"{data.attrs['delta_alpha']:.3f}" in scatter.texts[0].get_text()
+
+
+def test_verifications_are_of_the_wires_that_are_drawn(drawn, evaluation, config):
+    data = drawn("figure_S10")
+    shown = len(config.figures.realizations)
+    assert data["ratio"].shape == (shown, 4)
+    assert data["wrong_ratio"].shape == (shown, config.figures.verification_controls, 4)
+    np.testing.assert_allclose((data["wrong_ratio"] ** 2).median("control"), 1.0, atol=0.6)
+    assert (data["ratio"].mean() < data["wrong_ratio"].mean("control")).all()  # small changes
+    pair = wires(evaluation, config.figures.realizations[0])
+    for row, wire in enumerate(pair):
+        G = dl.conductance(
+            replace(wire, barrier=tuple(data.attrs["barriers"])),
+            mu=0.0,
+            B=data["B"].to_numpy(),
+            bias=data["bias"].to_numpy(),
+            temperature=config.dataset.temperature,
+            theta=np.radians(data.attrs["theta"]),
+        ).squeeze()
+        for name in CONDUCTANCES:
+            np.testing.assert_allclose(data[name][row], G[name], atol=1e-12)
+    maps = [axes.collections[0] for axes in draw("figure_S10", data).axes if _is_map(axes)]
+    for column in np.array(maps).reshape(3, 4).T:
+        assert len({(mesh.norm.vmin, mesh.norm.vmax) for mesh in column}) == 1
 
 
 def test_the_network_is_the_papers():

@@ -33,8 +33,10 @@ GROWTH_LIMIT = 1e7
 """Largest inverse pivot (in units of 1/t') up to which real elimination is trusted."""
 
 
-PairingFactors = Callable[[Nanowire, FloatArray], tuple[Any, Any]]
+PairingFactors = Callable[[Nanowire, Any], tuple[Any, Any]]
 """What `hamiltonian.pairing_factors` is, real or complex."""
+LeadSelfEnergies = Callable[[Nanowire, float, Any], ComplexArray]
+"""What `leads.lead_self_energies` is, at any angle of the field."""
 
 
 class Problem(NamedTuple):
@@ -53,8 +55,9 @@ def prepare(
     wires: Sequence[Nanowire],
     mu: FloatArray,
     B: FloatArray,
-    omega: FloatArray,
+    omega: FloatArray | ComplexArray,
     factors: PairingFactors = pairing_factors,
+    leads: LeadSelfEnergies = lead_self_energies,
 ) -> Problem:
     """Return the terms of all wires, with Σ(ω) of the parent superconductor from `factors`."""
     sites = wires[0].sites
@@ -63,7 +66,7 @@ def prepare(
     zeeman = np.outer([w.zeeman_per_tesla for w in wires] / hop, B)[:, :, None]
     phases = 2 * angle[:, None, None] * np.arange(sites)
     pairing = np.array([factors(w, omega) for w in wires])
-    sigma = np.array([[lead_self_energies(w, field, omega) for field in B] for w in wires])
+    sigma = np.array([[leads(w, field, omega) for field in B] for w in wires])
     for of_wire, phi in zip(sigma, angle, strict=True):
         for of_field in of_wire:
             rotate_spin(of_field, phi * (sites - 1))

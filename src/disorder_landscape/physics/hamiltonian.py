@@ -1,13 +1,16 @@
-"""The Bogoliubov–de Gennes Hamiltonian of the wire, Eq. S1 on a lattice, at θ = 0.
+"""The Bogoliubov–de Gennes Hamiltonian of the wire, Eq. S1 on a lattice.
 
 Conventions, stated here once
 -----------------------------
 Basis: (u↑, u↓, −v↓, v↑) on every site, so matrices are τ ⊗ σ with index 2·τ + σ.
-Onsite:   (2t − μ + V_i) τz + V_Z σx + Σ(ω),  Σ(ω) = −γ(ω + Δ₀τx)/√(Δ₀² − ω²).
+Onsite:   (2t − μ + V_i) τz + V_Z (σx cos θ + σy sin θ) + Σ(ω),  Σ(ω) = −γ(ω + Δ₀τx)/√(Δ₀² − ω²).
 Hopping from site i+1 to site i:  −t τz − (iα/2a) σy τz.
 Particle–hole symmetry: C H(ω)* C = −H(−ω) with C = τy σy.
 Charge: electrons have τz = +1; the leads conserve it.
-All matrices are real for |ω| < Δ₀, the energies of the paper.
+Field:    θ in radians, from the wire (x, θ = 0) to the spin–orbit field (y, θ = π/2), the same in
+          wire and leads; θ → π − θ (a rotation by σy) changes nothing, θ → −θ transposes all
+          matrices, and with x → −x it is a symmetry (σx).
+At θ = 0 all matrices are real for |ω| < Δ₀, the energies of the paper.
 """
 
 from __future__ import annotations
@@ -27,6 +30,10 @@ PAULI: dict[str, ComplexArray] = {
 }
 
 
+FULL_TURN = 2 * np.pi
+"""Largest angle θ that is accepted, in radians."""
+
+
 def tau_sigma(tau: str, sigma: str) -> ComplexArray:
     """Return τ ⊗ σ for two of "0xyz", shape (4, 4)."""
     return np.kron(PAULI[tau], PAULI[sigma]).astype(np.complex128)
@@ -35,6 +42,7 @@ def tau_sigma(tau: str, sigma: str) -> ComplexArray:
 TAU_Z = tau_sigma("z", "0")
 TAU_X = tau_sigma("x", "0")
 SIGMA_X = tau_sigma("0", "x")
+SIGMA_Y = tau_sigma("0", "y")
 TAU_Z_SIGMA_Y = tau_sigma("z", "y")
 PARTICLE_HOLE = tau_sigma("y", "y")
 
@@ -51,10 +59,17 @@ def self_energy(wire: Nanowire, omega: float) -> ComplexArray:
     return -normal * np.eye(4) - anomalous * TAU_X
 
 
-def onsite(wire: Nanowire, V: FloatArray, mu: float, B: float, omega: float) -> ComplexArray:
+def zeeman(V_Z: float, theta: float) -> ComplexArray:
+    """Return V_Z (σx cos θ + σy sin θ), shape (4, 4), in the units of V_Z."""
+    return np.asarray(V_Z * (np.cos(theta) * SIGMA_X + np.sin(theta) * SIGMA_Y))
+
+
+def onsite(
+    wire: Nanowire, V: FloatArray, mu: float, B: float, omega: float, theta: float = 0.0
+) -> ComplexArray:
     """Return the onsite terms of sites with the given potentials, shape (site, 4, 4), in meV."""
     kinetic = (2 * wire.hopping - mu + np.asarray(V))[:, None, None] * TAU_Z
-    return np.asarray(kinetic + wire.zeeman_per_tesla * B * SIGMA_X + self_energy(wire, omega))
+    return np.asarray(kinetic + zeeman(wire.zeeman_per_tesla * B, theta) + self_energy(wire, omega))
 
 
 def hopping(wire: Nanowire) -> ComplexArray:
@@ -62,10 +77,10 @@ def hopping(wire: Nanowire) -> ComplexArray:
     return np.asarray(-wire.hopping * TAU_Z - 1j * wire.spin_orbit_hopping * TAU_Z_SIGMA_Y)
 
 
-def lead_onsite(wire: Nanowire, B: float) -> ComplexArray:
+def lead_onsite(wire: Nanowire, B: float, theta: float = 0.0) -> ComplexArray:
     """Return the onsite term of the leads, which have no pairing, shape (4, 4), in meV."""
-    zeeman = wire.lead_zeeman_per_tesla * B
-    return np.asarray((2 * wire.hopping - wire.lead_mu) * TAU_Z + zeeman * SIGMA_X)
+    kinetic = (2 * wire.hopping - wire.lead_mu) * TAU_Z
+    return np.asarray(kinetic + zeeman(wire.lead_zeeman_per_tesla * B, theta))
 
 
 def lead_hopping(wire: Nanowire) -> ComplexArray:
@@ -73,12 +88,14 @@ def lead_hopping(wire: Nanowire) -> ComplexArray:
     return np.asarray(-wire.hopping * TAU_Z - 1j * wire.lead_spin_orbit_hopping * TAU_Z_SIGMA_Y)
 
 
-def wire_hamiltonian(wire: Nanowire, mu: float, B: float, omega: float) -> ComplexArray:
+def wire_hamiltonian(
+    wire: Nanowire, mu: float, B: float, omega: float, theta: float = 0.0
+) -> ComplexArray:
     """Return the whole matrix of the isolated wire, shape (4·site, 4·site), for checks."""
     n = wire.sites
     H = np.zeros((n, 4, n, 4), dtype=complex)
     sites = np.arange(n)
-    H[sites, :, sites, :] = onsite(wire, wire.potential_with_barriers, mu, B, omega)
+    H[sites, :, sites, :] = onsite(wire, wire.potential_with_barriers, mu, B, omega, theta)
     H[sites[:-1], :, sites[1:], :] = hopping(wire)
     H[sites[1:], :, sites[:-1], :] = hopping(wire).conj().T
     return H.reshape(4 * n, 4 * n)

@@ -19,8 +19,8 @@ with warnings.catch_warnings():  # without MUMPS Kwant warns; for a chain SciPy'
 ELECTRON, HOLE = 0, 1
 
 
-def build_system(wire: Nanowire) -> Any:
-    """Return the finalised Kwant system of a wire.
+def build_system(wire: Nanowire, theta: float = 0.0) -> Any:
+    """Return the finalised Kwant system of a wire in a field at the angle θ.
 
     Its parameters are `uniform`, the onsite matrix of a site without disorder, and B. The leads
     conserve charge (electrons are block 0, holes block 1) and have the particle–hole symmetry of
@@ -36,12 +36,12 @@ def build_system(wire: Nanowire) -> Any:
     system[(lattice(i) for i in range(wire.sites))] = onsite
     for i in range(wire.sites - 1):
         system[lattice(i), lattice(i + 1)] = h.hopping(wire)
-    system.attach_lead(_lead(wire, lattice, -1))
-    system.attach_lead(_lead(wire, lattice, +1))
+    system.attach_lead(_lead(wire, lattice, -1, theta))
+    system.attach_lead(_lead(wire, lattice, +1, theta))
     return system.finalized()
 
 
-def _lead(wire: Nanowire, lattice: Any, direction: int) -> Any:
+def _lead(wire: Nanowire, lattice: Any, direction: int, theta: float) -> Any:
     lead = kwant.Builder(
         kwant.TranslationalSymmetry((direction,)),
         conservation_law=-h.TAU_Z,
@@ -49,7 +49,7 @@ def _lead(wire: Nanowire, lattice: Any, direction: int) -> Any:
     )
 
     def onsite(site: Any, B: float) -> ComplexArray:
-        return h.lead_onsite(wire, B)
+        return h.lead_onsite(wire, B, theta)
 
     lead[lattice(0)] = onsite
     lead[lattice(0), lattice(1)] = h.lead_hopping(wire)
@@ -57,15 +57,15 @@ def _lead(wire: Nanowire, lattice: Any, direction: int) -> Any:
 
 
 def scattering_matrices(
-    wire: Nanowire, mu: FloatArray, B: FloatArray, omega: FloatArray
+    wire: Nanowire, mu: FloatArray, B: FloatArray, omega: FloatArray, theta: float = 0.0
 ) -> Iterator[tuple[tuple[int, int, int], Any]]:
     """Yield ((i_mu, i_B, i_omega), scattering matrix); lead modes are computed once for all μ."""
-    system = build_system(wire)
+    system = build_system(wire, theta)
     for j, field in enumerate(B):
         for k, energy in enumerate(omega):
             ready = system.precalculate(energy, what="modes", params={"B": field})
             for i, chemical_potential in enumerate(mu):
-                uniform = h.onsite(wire, np.zeros(1), chemical_potential, field, energy)[0]
+                uniform = h.onsite(wire, np.zeros(1), chemical_potential, field, energy, theta)[0]
                 params = {"B": field, "uniform": uniform}
                 yield (i, j, k), kwant.smatrix(ready, energy, params=params)
 
@@ -89,21 +89,27 @@ def conductances(smatrix: Any) -> FloatArray:
 
 
 def bare_conductance(
-    wires: Sequence[Nanowire], mu: FloatArray, B: FloatArray, omega: FloatArray
+    wires: Sequence[Nanowire],
+    mu: FloatArray,
+    B: FloatArray,
+    omega: FloatArray,
+    theta: float = 0.0,
 ) -> FloatArray:
     """Return the T = 0 conductances at ±ω, shape (wire, mu, B, omega, 2, 4), in e²/h."""
     G = np.empty((len(wires), mu.size, B.size, omega.size, 2, 4))
     for w, wire in enumerate(wires):
-        for index, smatrix in scattering_matrices(wire, mu, B, omega):
+        for index, smatrix in scattering_matrices(wire, mu, B, omega, theta):
             G[w, *index] = conductances(smatrix)
     return G
 
 
-def reflection_determinant(wires: Sequence[Nanowire], mu: FloatArray, B: FloatArray) -> FloatArray:
+def reflection_determinant(
+    wires: Sequence[Nanowire], mu: FloatArray, B: FloatArray, theta: float = 0.0
+) -> FloatArray:
     """Return det r at ω = 0 of both ends, shape (wire, lead, mu, B)."""
     determinant = np.empty((len(wires), 2, mu.size, B.size))
     for w, wire in enumerate(wires):
-        for (i, j, _), smatrix in scattering_matrices(wire, mu, B, np.zeros(1)):
+        for (i, j, _), smatrix in scattering_matrices(wire, mu, B, np.zeros(1), theta):
             for lead in (0, 1):
                 determinant[w, lead, i, j] = np.linalg.det(smatrix.submatrix(lead, lead)).real
     return determinant

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from disorder_landscape.arguments import require
-from disorder_landscape.physics import above_gap, fast_solver
+from disorder_landscape.physics import above_gap, fast_solver, tilted_field
 from disorder_landscape.physics.parameters import BOLTZMANN, FloatArray, Nanowire
 
 TOLERANCE = 5e-8
@@ -72,6 +72,7 @@ def thermal_quadrature(
     tolerance: float = TOLERANCE,
     panel: float = PANEL,
     reach: float = REACH,
+    theta: float = 0.0,
 ) -> ThermalConductance:
     """Return the conductance matrix at a finite temperature.
 
@@ -85,6 +86,8 @@ def thermal_quadrature(
         T > 0 in K.
     tolerance, panel, reach : float
         As TOLERANCE, PANEL and REACH.
+    theta : float
+        Angle of the field in radians.
 
     Raises
     ------
@@ -98,7 +101,7 @@ def thermal_quadrature(
     energies = np.empty(shape, dtype=np.int64)
     for index in np.ndindex(shape):
         w, m, f = index
-        bare = _BareConductance(wires[w], mu[m : m + 1], B[f : f + 1])
+        bare = _BareConductance(wires[w], mu[m : m + 1], B[f : f + 1], theta)
         low, high = _first_panels(wires[w], bias, kT, panel, reach)
         G[index], rules, missed = _integral(bare, low, high, bias, kT, tolerance)
         error[index] = rules + missed + LARGEST_G * np.exp(-reach)
@@ -107,15 +110,18 @@ def thermal_quadrature(
 
 
 class _BareConductance:
-    """G₀(±ω) of one wire at one μ and B, and how many energies it has been asked for."""
+    """G₀(±ω) of one wire at one μ, B and θ, and how many energies it has been asked for."""
 
-    def __init__(self, wire: Nanowire, mu: FloatArray, B: FloatArray) -> None:
-        self.wire, self.mu, self.B = wire, mu, B
+    def __init__(self, wire: Nanowire, mu: FloatArray, B: FloatArray, theta: float) -> None:
+        self.wire, self.mu, self.B, self.theta = wire, mu, B, theta
         self.energies = 0
 
     def __call__(self, omega: FloatArray) -> FloatArray:
         """Return G₀(±ω), shape (omega, 2, 4), for ω ≥ 0."""
         self.energies += omega.size
+        if self.theta != 0:
+            arguments = [self.wire], self.mu, self.B, omega, self.theta
+            return np.asarray(tilted_field.bare_conductance(*arguments)[0, 0, 0])
         G0 = np.empty((omega.size, 2, 4))
         below = omega < self.wire.delta0
         for solver, some in ((fast_solver, below), (above_gap, ~below)):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 
 from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.physics.parameters import FloatArray, Nanowire
@@ -11,11 +12,18 @@ BareConductance = Callable[[Sequence[Nanowire], FloatArray, FloatArray, FloatArr
 Determinant = Callable[[Sequence[Nanowire], FloatArray, FloatArray], FloatArray]
 
 
-def solver_functions(name: str) -> tuple[BareConductance, Determinant]:
-    """Return `bare_conductance` and `reflection_determinant` of "fast" or "kwant".
+def solver_functions(name: str, theta: float = 0.0) -> tuple[BareConductance, Determinant]:
+    """Return `bare_conductance` and `reflection_determinant` of "fast" or "kwant" at the angle θ.
 
     Each is imported only when it is asked for: Kwant's import takes a second, Numba's two.
     """
+    if name == "fast" and theta != 0:
+        from disorder_landscape.physics import tilted_field
+
+        return (
+            partial(tilted_field.bare_conductance, theta=theta),
+            partial(tilted_field.reflection_determinant, theta=theta),
+        )
     if name == "fast":
         from disorder_landscape.physics import fast_solver
 
@@ -23,7 +31,10 @@ def solver_functions(name: str) -> tuple[BareConductance, Determinant]:
     if name == "kwant":
         from disorder_landscape.physics import kwant_solver
 
-        return kwant_solver.bare_conductance, kwant_solver.reflection_determinant
+        return (
+            partial(kwant_solver.bare_conductance, theta=theta),
+            partial(kwant_solver.reflection_determinant, theta=theta),
+        )
     raise ArgumentError("solver", "be 'fast' or 'kwant'", f"it is {name!r}")
 
 

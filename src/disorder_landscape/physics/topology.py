@@ -9,7 +9,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from disorder_landscape.arguments import grid_in
+from disorder_landscape.arguments import grid_in, number_in
+from disorder_landscape.physics.hamiltonian import FULL_TURN
 from disorder_landscape.physics.labels import labelled
 from disorder_landscape.physics.parameters import FloatArray, Nanowire
 from disorder_landscape.physics.solvers import solver_functions, wires_of
@@ -21,6 +22,7 @@ def topological_visibility(
     B: ArrayLike,
     barrier: bool = True,
     solver: str = "fast",
+    theta: float = 0.0,
 ) -> xr.DataArray:
     """Return T_IV = det r at ω = 0 of both ends of a wire, or of several of equal length (S-I).
 
@@ -32,6 +34,8 @@ def topological_visibility(
     barrier : bool
         Whether with the device's barriers, or without any.
     solver : {"fast", "kwant"}
+    theta : float
+        Angle of the field relative to the wire in radians.
 
     Returns
     -------
@@ -48,7 +52,8 @@ def topological_visibility(
     grids = {"mu": grid_in("mu", mu, -1e3, 1e3, "meV"), "B": grid_in("B", B, -100.0, 100.0, "T")}
     if not barrier:
         wires = [replace(w, barrier=(0.0, 0.0)) for w in wires]
-    determinant = solver_functions(solver)[1](wires, grids["mu"], grids["B"])
+    theta = number_in("theta", theta, -FULL_TURN, FULL_TURN, "radians")
+    determinant = solver_functions(solver, theta)[1](wires, grids["mu"], grids["B"])
     coords = {"lead": ["L", "R"], **grids}
     data = {"T_IV": (("realization", *coords), determinant)}
     T: xr.DataArray = labelled(xr.Dataset(data, coords=coords))["T_IV"]

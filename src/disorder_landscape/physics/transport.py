@@ -10,7 +10,9 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from disorder_landscape.arguments import grid_in, number_in
+from disorder_landscape.physics import tilted_average
 from disorder_landscape.physics.finite_temperature import TOLERANCE, thermal_conductance
+from disorder_landscape.physics.hamiltonian import FULL_TURN
 from disorder_landscape.physics.labels import CONDUCTANCES, labelled
 from disorder_landscape.physics.parameters import BOLTZMANN, TEMPERATURE, FloatArray, Nanowire
 from disorder_landscape.physics.quadrature import thermal_quadrature
@@ -18,9 +20,9 @@ from disorder_landscape.physics.solvers import solver_functions, wires_of
 from disorder_landscape.physics.thermal import ENERGY_SPACING, thermal_grid
 from disorder_landscape.physics.thermal_poles import REACH
 
-BLOCK_ENERGIES = {"fast": 2**18, "kwant": 2**8}
+BLOCK_ENERGIES = {"fast": 2**18, "kwant": 2**8, "tilted": 2**14}
 """Energies that each solver is given at a time: about 16 MB and one second."""
-BLOCK_SETS = 2**12
+BLOCK_SETS = {"fast": 2**12, "tilted": 2**5}
 """Sets (wire, μ, B) that are averaged exactly at a time: one or two seconds."""
 BELOW_GAP = 0.98
 """Part of the gap up to which the thermal window is taken as rational in energy."""
@@ -37,6 +39,7 @@ def conductance(
     solver: str = "fast",
     energy_spacing: float | None = None,
     progress: Progress | None = None,
+    theta: float = 0.0,
 ) -> xr.Dataset:
     """Return the conductance matrix of a wire, or of several of equal length (S-I).
 
@@ -54,12 +57,16 @@ def conductance(
         does, instead of exactly. Kwant always does, by default at 0.5 µeV.
     progress : callable, optional
         Told how many pairs (μ, B) have just been done, and how many there are in all.
+    theta : float
+        Angle of the field relative to the wire in radians, θ of Eq. S1. All but 0, the paper's,
+        take a route that is some fifty times slower.
 
     Returns
     -------
     xarray.Dataset
         G_LL, G_RR, G_LR, G_RL in e²/h, dims (mu, B, bias), with a leading dim realization for
-        several wires. An exact average also has `error`, the estimated error in e²/h, and
+        several wires; solver, temperature, theta and, if the wires have the same, barrier as
+        attributes. An exact average also has `error`, the estimated error in e²/h, and
         `energies`, how many the solver was asked for, dims (mu, B).
 
     Raises
@@ -76,17 +83,24 @@ def conductance(
         "bias": grid_in("bias", bias, -delta0 * (1 - 1e-6), delta0 * (1 - 1e-6), "meV"),
     }
     temperature = number_in("temperature", temperature, 0.0, 10.0, "K")
-    bare = solver_functions(solver)[0]
+    theta = number_in("theta", theta, -FULL_TURN, FULL_TURN, "radians")
+    bare = solver_functions(solver, theta)[0]
+    route = "tilted" if solver == "fast" and theta != 0 else solver
     shape = (len(wires), grids["mu"].size, grids["B"].size)
     told = progress if progress is not None else lambda done, total: None
     exact = temperature > 0 and solver == "fast" and energy_spacing is None
     G = np.empty((*shape, grids["bias"].size, 4))
     error, energies = np.zeros(shape), np.zeros(shape, dtype=np.int64)
     if exact:
-        for some, points, fields in _blocks(shape, BLOCK_SETS):
+        for some, points, fields in _blocks(shape, BLOCK_SETS[route]):
             at = some, points, fields
             G[at], error[at], energies[at] = exact_average(
-                wires[some], grids["mu"][points], grids["B"][fields], grids["bias"], temperature
+                wires[some],
+                grids["mu"][points],
+                grids["B"][fields],
+                grids["bias"],
+                temperature,
+                theta,
             )
             told(error[at].size, error.size)
     else:
@@ -97,7 +111,7 @@ def conductance(
             omega, weights = thermal_grid(grids["bias"], temperature, delta0, spacing)
         else:
             omega, weights = _bare_grid(grids["bias"])
-        for some, points, fields in _blocks(shape, BLOCK_ENERGIES[solver] // omega.size):
+        for some, points, fields in _blocks(shape, BLOCK_ENERGIES[route] // omega.size):
             G0 = bare(wires[some], grids["mu"][points], grids["B"][fields], omega)
             G[some, points, fields] = np.einsum("wmbkse,vks->wmbve", G0, weights)
             told(G0[..., 0, 0, 0].size, error.size)
@@ -106,7 +120,9 @@ def conductance(
     if exact:
         data["error"] = (("realization", "mu", "B"), error)
         data["energies"] = (("realization", "mu", "B"), energies)
-    attrs = {"temperature": temperature, "solver": solver}
+    attrs = {"temperature": temperature, "solver": solver, "theta": theta}
+    if len({w.barrier for w in wires}) == 1:
+        attrs["barrier"] = wires[0].barrier
     dataset = labelled(xr.Dataset(data, coords=grids, attrs=attrs))
     return dataset.isel(realization=0) if isinstance(wire, Nanowire) else dataset
 
@@ -117,12 +133,13 @@ def exact_average(
     B: FloatArray,
     bias: FloatArray,
     temperature: float,
+    theta: float = 0.0,
 ) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
     """Return the thermal average, its estimated error and the number of energies it took.
 
     Rational in energy and in closed form where the thermal window stays below the gap
-    (`finite_temperature`); by adaptive quadrature (`quadrature`) where it does not, and for the
-    rare set of which no rational model within the tolerance is found.
+    (`finite_temperature`, `tilted_average`); by adaptive quadrature (`quadrature`) where it does
+    not, and for the rare set of which no rational model within the tolerance is found.
 
     Returns
     -------
@@ -132,10 +149,17 @@ def exact_average(
     """
     window = abs(bias).max() + REACH * BOLTZMANN * temperature
     if window > BELOW_GAP * min(w.delta0 for w in wires):
-        return thermal_quadrature(wires, mu, B, bias, temperature)
-    G, error, energies = thermal_conductance(wires, mu, B, bias, temperature)
+        return thermal_quadrature(wires, mu, B, bias, temperature, theta=theta)
+    if theta == 0:
+        G, error, energies = thermal_conductance(wires, mu, B, bias, temperature)
+    else:
+        G, error, energies = tilted_average.thermal_conductance(
+            wires, mu, B, bias, temperature, theta
+        )
     for w, m, f in np.argwhere(~(error <= TOLERANCE)):
-        one = thermal_quadrature([wires[w]], mu[m : m + 1], B[f : f + 1], bias, temperature)
+        one = thermal_quadrature(
+            [wires[w]], mu[m : m + 1], B[f : f + 1], bias, temperature, theta=theta
+        )
         G[w, m, f], error[w, m, f] = one.conductance[0, 0, 0], one.error[0, 0, 0]
         energies[w, m, f] += one.energies[0, 0, 0]
     return G, error, energies

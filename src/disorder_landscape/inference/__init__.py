@@ -1,0 +1,1 @@
+"""From predicted disorder back to measurements."""

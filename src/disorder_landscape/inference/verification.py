@@ -1,0 +1,197 @@
+"""Whether predicted disorder explains measurements that the network never saw (K'_full of S-II.1).
+
+"Our method's disorder prediction can be verified through the use of additional conductance
+measurements": at other μ, B, bias, barriers or angle θ of the field. The predicted wire is
+simulated at those settings and compared with the measurement, and so are wires with random
+disorder of the same model, the controls. A prediction that explains no more than they do is wrong,
+or the model is.
+
+The mean of V is no label (S-II.1: it has a standard deviation of 0.01 meV), and predictions have
+none. It acts as a shift of μ, which an experiment would calibrate, and moves levels by more than
+kT. So each wire, control or not, is compared at the shift within ±0.03 meV that suits it best; the
+shift is found with the measurements at θ = 0, where there are any: they are simulated sooner.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from disorder_landscape.arguments import grid_in, number_in, require
+from disorder_landscape.config import DatasetConfig
+from disorder_landscape.inference.measurement import Measurement, measurement_of
+from disorder_landscape.inference.verdict import SIGNIFICANCE, comparison, scores
+from disorder_landscape.physics.disorder import MEAN_STD, disorder_realization
+from disorder_landscape.physics.labels import CONDUCTANCES
+from disorder_landscape.physics.parameters import FloatArray, Nanowire
+from disorder_landscape.physics.transport import Progress, conductance
+
+SHIFTS = np.linspace(-3 * MEAN_STD, 3 * MEAN_STD, 13)
+"""Means of V in meV that are tried; the steps are about kT."""
+FINER = np.linspace(-0.8, 0.8, 9)
+"""Then those around the best of them, in units of the step: conductances change within kT."""
+CONTROLS = 50
+
+
+def verify(
+    prediction: xr.Dataset,
+    measurements: xr.Dataset | Sequence[xr.Dataset],
+    noise: float = 0.0,
+    controls: int = CONTROLS,
+    seed: int = 0,
+    config: DatasetConfig | None = None,
+    shifts: ArrayLike = SHIFTS,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Compare measurements with what the predicted wire would show, and with wrong disorder.
+
+    Parameters
+    ----------
+    prediction : Dataset
+        potential (site) in meV and alpha in meV nm of one wire, as `predict` returns them.
+    measurements : Dataset or sequence of them
+        G_LL … G_RL in e²/h with dims (mu, B, bias) in any order, and the attributes theta
+        (radians), barrier (left and right, meV) and temperature (K), as `conductance` returns them.
+    noise : float
+        Standard deviation of the measured conductances' errors in e²/h.
+    controls : int
+        How many wires with random disorder; at least 19, so that p can fall to 0.05.
+    seed : int
+        Of the controls.
+    config : DatasetConfig, optional
+        Disorder model of the network, from which controls are drawn; by default the paper's with
+        the prediction's number of sites and of components.
+    shifts : array, shape (shift,)
+        Means of V in meV that are tried, increasing, with finer steps around the best one then;
+        0 takes the potentials as they are.
+    progress : callable, optional
+        Told how many pairs (μ, B) have just been simulated, and how many there are in all.
+
+    Returns
+    -------
+    xarray.Dataset
+        mismatch and control_mismatch: root-mean-square differences in e²/h, dims (measurement,
+        channel) and (control, measurement, channel); ratio (measurement, channel), of the first to
+        the median of the second; score and control_score (control), the ratios' root mean square
+        over measurements and channels; shift and control_shift (control) in meV; p_value, the
+        chance that wrong disorder scores as well; the sentence verdict as attribute. Channels in
+        which wrong disorder differs by no more than the noise have no weight in the scores.
+
+    Raises
+    ------
+    ArgumentError
+        If the prediction or a measurement is not one wire's, lacks a variable or an attribute or
+        holds NaN, if the settings cannot be simulated, or another argument is out of range.
+    """
+    given = [measurements] if isinstance(measurements, xr.Dataset) else list(measurements)
+    require(bool(given), "measurement", "be one Dataset or more", "there is none")
+    measured = [measurement_of(dataset) for dataset in given]
+    noise = number_in("noise", noise, 0.0, 1.0, "e²/h")
+    controls = int(number_in("controls", controls, np.ceil(1 / SIGNIFICANCE) - 1, 10_000))
+    seed = int(number_in("seed", seed, 0, 2**63))
+    tried = grid_in("shifts", shifts, -1.0, 1.0, "meV")
+    predicted = _predicted_wire(prediction)
+    model = _disorder_model(prediction, predicted, config)
+    wires = [predicted, *control_wires(model, controls, seed)]
+    squares, shift = _mean_squares(wires, measured, tried, noise, progress)
+    return comparison(np.sqrt(squares), shift, noise)
+
+
+def _predicted_wire(prediction: xr.Dataset) -> Nanowire:
+    must = "hold the potential and alpha of one wire, as `landscape predict` writes them"
+    for name, dims in (("potential", ("site",)), ("alpha", ())):
+        there = isinstance(prediction, xr.Dataset) and name in prediction.variables
+        require(there, "prediction", must, f"it lacks {name}")
+        found = prediction[name].dims
+        require(found == dims, "prediction", must, f"the dims of {name} are {found}")
+    return Nanowire(prediction["potential"].to_numpy(), alpha=float(prediction["alpha"]))
+
+
+def _disorder_model(
+    prediction: xr.Dataset, predicted: Nanowire, config: DatasetConfig | None
+) -> DatasetConfig:
+    """Return the disorder model that the prediction was made with."""
+    if config is None:
+        components = prediction.sizes.get("component", 0)
+        must = "hold the components, which tell the disorder model"
+        require(components > 0, "prediction", must, "it lacks them")
+        return DatasetConfig(realizations=1, sites=predicted.sites, components=components)
+    must = "come from the model that is given"
+    made_by = prediction.attrs.get("config_hash", config.hash)
+    require(made_by == config.hash, "prediction", must, "it comes from another dataset's")
+    require(predicted.sites == config.sites, "prediction", must, f"it has {predicted.sites} sites")
+    return config
+
+
+def control_wires(config: DatasetConfig, count: int, seed: int = 0) -> list[Nanowire]:
+    """Return wires with random disorder of a model, which are realizations of no dataset."""
+    wires = []
+    for index in range(count):
+        rng = np.random.default_rng([seed, index, 1])  # realizations are drawn from pairs
+        alpha = rng.uniform(*config.alpha_range)
+        V = disorder_realization(
+            rng, config.components, config.sites, config.correlation_length, config.amplitude
+        )[1]
+        wires.append(Nanowire(V, alpha=alpha))
+    return wires
+
+
+def _mean_squares(
+    wires: Sequence[Nanowire],
+    measured: Sequence[Measurement],
+    shifts: FloatArray,
+    noise: float,
+    progress: Progress | None,
+) -> tuple[FloatArray, FloatArray]:
+    """Return mean squared differences in (e²/h)², (wire, measurement, channel), and the shifts."""
+    tilted = np.array([m.theta != 0 for m in measured])
+    deciding = tilted == tilted.all()
+    finer = FINER * np.diff(shifts).min() if shifts.size > 1 else np.empty(0)
+    tries = np.where(deciding, shifts.size + finer.size, 1)
+    in_all = sum(
+        n * len(wires) * m.mu.size * m.B.size for n, m in zip(tries, measured, strict=True)
+    )
+
+    def told(done: int) -> None:
+        if progress is not None:
+            progress(done, in_all)
+
+    first = [m for m, decides in zip(measured, deciding, strict=True) if decides]
+    found = np.array([_of_wire(wire, first, shifts, told) for wire in wires])
+    typical = np.sqrt(np.median(found[1:], axis=(0, 1)))
+    squares = np.empty((len(wires), len(measured), len(CONDUCTANCES)))
+    best = np.empty(len(wires))
+    for w, wire in enumerate(wires):
+        coarse = shifts[scores(found[w], typical, noise).argmin()]
+        tried = np.append(shifts, coarse + finer)
+        further = _of_wire(wire, first, coarse + finer, told)
+        at_tried = np.concatenate([found[w], further])
+        chosen = scores(at_tried, typical, noise).argmin()
+        best[w], squares[w, deciding] = tried[chosen], at_tried[chosen]
+        others = [m for m, decides in zip(measured, deciding, strict=True) if not decides]
+        squares[w, ~deciding] = _of_wire(wire, others, best[w : w + 1], told)[0]
+    return squares, best
+
+
+def _of_wire(
+    wire: Nanowire,
+    measured: Sequence[Measurement],
+    shifts: FloatArray,
+    told: Callable[[int], None],
+) -> FloatArray:
+    """Return mean squared differences of a wire, shape (shift, measurement, channel)."""
+    squares = np.empty((shifts.size, len(measured), len(CONDUCTANCES)))
+    for i, m in enumerate(measured if shifts.size else []):
+        shifted = np.round(m.mu - shifts[:, None], 9)  # V + δ at μ is V at μ − δ
+        mu, back = np.unique(shifted, return_inverse=True)
+        here = replace(wire, barrier=m.barrier)
+        found = conductance(here, mu, m.B, m.bias, m.temperature, theta=m.theta)
+        for c, name in enumerate(CONDUCTANCES):
+            simulated = found[name].to_numpy()[back.reshape(shifted.shape)]
+            squares[:, i, c] = ((simulated - m.G[..., c]) ** 2).mean(axis=(1, 2, 3))
+        told(shifted.size * m.B.size)
+    return squares

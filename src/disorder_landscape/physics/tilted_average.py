@@ -1,0 +1,196 @@
+"""The conductance at finite temperature in a tilted field, in closed form.
+
+As in `finite_temperature`, but for one set (wire, μ, B) after the other and with dense matrices: at
+θ ≠ 0 nothing is real or symmetric. With H = iA of the isolated wire (`tilted_levels`) and the
+leads' self-energies, linear in energy, iΣ₀ + zΣ₁, the ends' Green's function is
+
+    G(z) = u (zN − iK)⁻¹ uᵀ = Σ_n a_n b_n†/(z − z_n),   N = 1 − uᵀΣ₁u,   K = A + uᵀΣ₀u,
+
+with N and K real in the basis of `tilted_levels` by particle–hole symmetry, and z_n = −z_m* in
+pairs. A probability Tr[Γ_b G_ba Γ_a G_ba†] then has the poles z_n with the residues
+b_n†Γ_a G_ba(z_n*)†Γ_b a_n, and their conjugates. Their thermal averages are trigamma functions
+(`thermal_poles`). What is left of the true conductance is smooth, some 1e-6 e²/h; its polynomial
+through Chebyshev nodes is averaged too, and compared with the truth at further energies.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+from threadpoolctl import ThreadpoolController
+
+from disorder_landscape.physics import finite_temperature, tilted_field
+from disorder_landscape.physics.hamiltonian import ComplexArray
+from disorder_landscape.physics.leads import rotate_spin
+from disorder_landscape.physics.parameters import BOLTZMANN, FloatArray, Nanowire
+from disorder_landscape.physics.thermal_poles import (
+    REACH,
+    SERIES,
+    chebyshev_nodes,
+    interpolation_weights,
+    thermal_node_weights,
+)
+from disorder_landscape.physics.tilted_leads import tilted_lead_self_energies
+from disorder_landscape.physics.tilted_levels import BASIS, isolated_wire
+
+NODES = (10, 16, 24)
+"""Numbers of energies for the levels that are tried in turn."""
+HEIGHT = 0.25
+"""How far above the real axis they lie, in units of the window over their number."""
+SMOOTH, CHECKS = 8, 8
+"""Real energies for the smooth part, and for its check: together one vector of the recursion."""
+TOLERANCE = 2e-5
+"""Estimated error in e²/h above which nodes are added."""
+
+LEFT_ELECTRON, LEFT_HOLE, RIGHT_ELECTRON, RIGHT_HOLE = (slice(2 * i, 2 * i + 2) for i in range(4))
+PROBABILITIES = [
+    (LEFT_HOLE, LEFT_ELECTRON),
+    (RIGHT_ELECTRON, LEFT_ELECTRON),
+    (RIGHT_HOLE, LEFT_ELECTRON),
+    (RIGHT_HOLE, RIGHT_ELECTRON),
+    (LEFT_ELECTRON, RIGHT_ELECTRON),
+    (LEFT_HOLE, RIGHT_ELECTRON),
+]
+"""Out of which entries, and into which: below the gap these give all conductances."""
+WEIGHTS = np.array(
+    [[2, 1, 1, 0, 0, 0], [0, 0, 0, 2, 1, 1], [0, 0, 0, 0, 1, -1], [0, 1, -1, 0, 0, 0]]
+)
+"""G_LL, G_RR, G_LR, G_RL as sums of the probabilities."""
+
+
+def thermal_conductance(
+    wires: Sequence[Nanowire],
+    mu: FloatArray,
+    B: FloatArray,
+    bias: FloatArray,
+    temperature: float,
+    theta: float,
+) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
+    """Return conductances, their estimated error and how many energies each set took.
+
+    As `finite_temperature.thermal_conductance`, in a field at the angle θ.
+
+    Returns
+    -------
+    G : array, shape (wire, mu, B, bias, 4)
+        G_LL, G_RR, G_LR, G_RL in e²/h.
+    error, energies : array, shape (wire, mu, B)
+    """
+    shape = len(wires), mu.size, B.size
+    G, error = np.empty((*shape, bias.size, 4)), np.full(shape, np.inf)
+    energies = np.zeros(shape, dtype=np.int64)
+    for w, f in np.ndindex(shape[0], shape[2]):
+        field, one = B[f : f + 1], [wires[w]]
+        if field[0] == 0:  # any angle is the same, and every level twofold
+            straight = finite_temperature.thermal_conductance(one, mu, field, bias, temperature)
+            G[w, :, f], error[w, :, f], energies[w, :, f] = (part[0, :, 0] for part in straight)
+            continue
+        average = _Average(wires[w], float(field[0]), bias, BOLTZMANN * temperature, theta)
+        for nodes in NODES:
+            missing = np.flatnonzero(~(error[w, :, f] <= TOLERANCE))
+            if missing.size:
+                energies[w, missing, f] += nodes + SMOOTH + CHECKS
+                with _controller().limit(
+                    limits=1, user_api="blas"
+                ):  # the matrices are too small to be shared
+                    found, estimate = average(mu[missing], nodes)
+                better = estimate < error[w, missing, f]
+                G[w, missing[better], f] = found[better]
+                error[w, missing[better], f] = estimate[better]
+    return G, error, energies
+
+
+class _Average:
+    """The thermal average of one wire at one field."""
+
+    def __init__(self, wire: Nanowire, B: float, bias: FloatArray, kT: float, theta: float) -> None:
+        self.wire, self.B, self.theta = wire, np.array([B]), theta
+        self.bias, self.kT = bias, kT
+        self.window = window = abs(bias).max() + REACH * kT
+        at_checks = np.sin(np.pi * (np.arange(CHECKS) + 0.3) / (2 * CHECKS))
+        self.real = np.concatenate([chebyshev_nodes(window, SMOOTH), window * at_checks])
+        self.smooth = thermal_node_weights(bias, kT, window, SMOOTH)
+        self.check = interpolation_weights(np.concatenate([at_checks, -at_checks]), SMOOTH)
+        two = window * np.array([-1, 1]) / np.sqrt(2)
+        sigma = tilted_lead_self_energies(wire, B, two, theta)
+        angle = np.arctan2(wire.spin_orbit_hopping, wire.hopping)
+        rotate_spin(sigma, angle * (wire.sites - 1))
+        below, above = _on_the_ends(sigma)
+        self.slope = (above - below) / (two[1] - two[0])
+        self.sigma = below - two[0] * self.slope
+
+    def __call__(self, mu: FloatArray, nodes: int) -> tuple[FloatArray, FloatArray]:
+        """Return the conductances, shape (mu, bias, 4), and the estimated error, shape (mu,)."""
+        x = chebyshev_nodes(self.window, nodes)
+        z = x + 1j * HEIGHT * self.window / nodes
+        wires, theta = [self.wire], self.theta
+        F = tilted_field.isolated_green_functions(wires, mu, self.B, z, theta)[0, 0]
+        bare = tilted_field.bare_conductance(wires, mu, self.B, self.real, theta)[0, :, 0]
+        some = [self._of_wire(*isolated_wire(z, F[m]), bare[m]) for m in range(mu.size)]
+        G, error = (np.array(part) for part in zip(*some, strict=True))
+        return G, np.where(np.isfinite(G).all(axis=(1, 2)), error, np.inf)
+
+    def _of_wire(self, A: FloatArray, u: FloatArray, bare: FloatArray) -> tuple[FloatArray, float]:
+        """Return G(V), shape (bias, 4), and its estimated error; bare: (real, 2, 4)."""
+        z, residues = self._poles(A, u)
+        signed = np.concatenate([self.real[:SMOOTH], -self.real[:SMOOTH]])
+        checks = np.concatenate([self.real[SMOOTH:], -self.real[SMOOTH:]])
+        rest = [
+            np.concatenate([some[:, 0], some[:, 1]]) - 2 * (1 / (at[:, None] - z) @ residues).real
+            for at, some in ((signed, bare[:SMOOTH]), (checks, bare[SMOOTH:]))
+        ]
+        error = abs(self.check @ rest[0] - rest[1]).max() + finite_temperature.FLOOR
+        unit = 2 * np.pi * self.kT
+        shares = _trigamma(0.5 + 1j * (z - self.bias[:, None]) / unit) / (1j * unit)
+        return 2 * (shares @ residues).real + self.smooth @ rest[0], float(error)
+
+    def _poles(self, A: FloatArray, u: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+        """Return the poles of the wire with its leads and their residues, shape (pole, 4)."""
+        sigma, slope = (BASIS.conj().T @ s @ BASIS for s in (self.sigma, self.slope))
+        N = np.eye(len(A)) - u.T @ slope.real @ u
+        K = A + u.T @ sigma.imag @ u
+        eigenvalues, V = np.linalg.eig(np.linalg.solve(N, K))
+        z = 1j * eigenvalues
+        a = (BASIS @ (u @ V)).T  # (pole, 8)
+        b = np.linalg.solve(V, np.linalg.solve(N, u.T)) @ BASIS.conj().T
+        products = (a[:, :, None] * b[:, None, :]).reshape(-1, 64)
+        G = (1 / (z.conj()[:, None] - z) @ products).reshape(-1, 8, 8).conj()  # G(z*)*
+        gamma = [1j * (s - s.conj().T) for s in (self.sigma, self.slope)]
+        at_poles = gamma[0] + z[:, None, None] * gamma[1]
+        left = np.einsum("nij,nj->ni", at_poles, a)
+        right = np.einsum("ni,nij->nj", b, at_poles)
+        found = [
+            np.einsum("ni,nj,nij->n", left[:, out], right[:, into], G[:, out, into])
+            for out, into in PROBABILITIES
+        ]
+        return z, np.asarray(np.array(found).T @ WEIGHTS.T)
+
+
+@cache
+def _controller() -> ThreadpoolController:
+    """Return what knows the process's libraries: to look for them takes milliseconds."""
+    return ThreadpoolController()
+
+
+def _on_the_ends(sigma: ComplexArray) -> ComplexArray:
+    """Return self-energies (energy, lead, charge, 2, 2) as matrices, shape (energy, 8, 8)."""
+    whole = np.zeros((len(sigma), 8, 8), dtype=np.complex128)
+    for block in range(4):
+        at = slice(2 * block, 2 * block + 2)
+        whole[:, at, at] = sigma[:, block // 2, block % 2]
+    return whole
+
+
+def _trigamma(z: ComplexArray) -> ComplexArray:
+    """Return ψ₁(z), Re z ≥ ½, to 1e-12: by recurrence and Stirling's series (DLMF 5.15.8)."""
+    total = np.zeros_like(z)
+    for _ in range(8):
+        total += 1 / z**2
+        z = z + 1
+    series = SERIES[0] + 0j
+    for term in SERIES[1:]:
+        series = series / z**2 + term
+    return np.asarray(total + 1 / z + 1 / (2 * z**2) + series / z**3)

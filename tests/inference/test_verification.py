@@ -1,0 +1,198 @@
+"""Predictions compared with measurements: the truth passes, wrong disorder does not."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import disorder_landscape as dl
+from disorder_landscape import ArgumentError, Nanowire, conductance
+from disorder_landscape.config import DatasetConfig
+from disorder_landscape.inference.verdict import scores, table
+from disorder_landscape.inference.verification import control_wires
+from disorder_landscape.physics.disorder import cosine_components
+from disorder_landscape.physics.labels import CONDUCTANCES
+
+SITES, COMPONENTS, CONTROLS = 100, 3, 19
+CONFIG = DatasetConfig(realizations=1, sites=SITES, components=COMPONENTS)
+TRUE = control_wires(CONFIG, 1, seed=5)[0]
+SETTINGS = {"mu": [0.1, 0.4], "B": [0.2, 0.5], "bias": [-0.03, 0.01, 0.05]}
+
+
+def measure(wire, theta=0.0, barrier=(15.0, 15.0), noise=0.0, **settings):
+    G = conductance(replace(wire, barrier=barrier), **(SETTINGS | settings), theta=theta)
+    rng = np.random.default_rng(1)
+    for name in CONDUCTANCES:
+        G[name] += noise * rng.normal(size=G[name].shape)
+    return G
+
+
+def prediction_of(wire, shift=0.0):
+    """What a perfect network says: everything but the mean of V."""
+    c = cosine_components(wire.potential)
+    return xr.Dataset(
+        {
+            "potential": ("site", wire.potential - wire.potential.mean() + shift),
+            "components": ("component", c[1 : COMPONENTS + 1]),
+            "alpha": wire.alpha,
+        }
+    )
+
+
+def verify(prediction, *measurements, controls=CONTROLS, **options):
+    return dl.verify(prediction, measurements, controls=controls, **options)
+
+
+def test_the_truth_passes_at_settings_of_every_kind():
+    measured = [
+        measure(TRUE),
+        measure(TRUE, barrier=(20.0, 5.0)),
+        measure(TRUE, theta=0.5, mu=0.1, B=0.5),
+    ]
+    told = []
+    result = verify(prediction_of(TRUE), *measured, progress=lambda *pair: told.append(pair))
+    assert result["mismatch"].dims == ("measurement", "channel")
+    assert result["control_mismatch"].shape == (CONTROLS, 3, 4)
+    assert result["p_value"] == pytest.approx(1 / (1 + CONTROLS))
+    assert result.attrs["verdict"].startswith("The prediction passes: ")
+    assert (result["score"] < 0.2 * result["control_score"]).all()
+    np.testing.assert_allclose(
+        result["ratio"], result["mismatch"] / result["control_mismatch"].median("control")
+    )
+    done, in_all = (list(numbers) for numbers in zip(*told, strict=True))
+    assert sum(done) == in_all[0] == in_all[-1] == (1 + CONTROLS) * (2 * (13 + 9) * 4 + 1)
+
+
+def test_exact_knowledge_leaves_no_mismatch():
+    whole = prediction_of(TRUE, shift=TRUE.potential.mean())
+    result = verify(whole, measure(TRUE, barrier=(12.0, 30.0)), shifts=[0.0])
+    assert result["mismatch"].max() < 1e-12
+    assert result["shift"] == 0
+    tilted = verify(whole, measure(TRUE, theta=-0.8, mu=0.4, B=0.5), shifts=0.0)
+    assert tilted["mismatch"].max() < 1e-12
+
+
+def test_settings_matter():
+    """At another angle, barrier or temperature the very wire is another measurement."""
+    whole = prediction_of(TRUE, shift=TRUE.potential.mean())
+    for name, value in {"theta": 0.8, "barrier": (30.0, 5.0), "temperature": 0.02}.items():
+        G = measure(TRUE, mu=0.1, B=0.5)
+        G.attrs[name] = value
+        assert verify(whole, G, shifts=0.0)["mismatch"].max() > 1e-3
+
+
+def test_wrong_disorder_fails():
+    wrong = control_wires(CONFIG, 1, seed=6)[0]
+    result = verify(prediction_of(wrong), measure(TRUE))
+    assert result["p_value"] > 0.05
+    assert result.attrs["verdict"].startswith("The prediction fails: ")
+    assert 0.3 < result["score"] < 3
+
+
+def test_the_mean_of_V_is_found():
+    shifted = replace(TRUE, potential=TRUE.potential - TRUE.potential.mean() + 0.02)
+    result = verify(prediction_of(TRUE), measure(shifted))
+    assert result["shift"] == pytest.approx(0.02)
+    assert result["ratio"].max() < 1e-3
+    without = verify(prediction_of(TRUE), measure(shifted), shifts=[0.0])
+    assert without["ratio"].min() > 0.05
+
+
+def test_controls_are_those_of_the_seed_and_of_the_model():
+    one, two = (control_wires(CONFIG, 3, seed=7) for _ in range(2))
+    for a, b in zip(one, two, strict=True):
+        np.testing.assert_array_equal(a.potential, b.potential)
+    assert one[0].alpha != one[1].alpha
+    assert abs(cosine_components(one[0].potential)[COMPONENTS + 1 :]).max() < 1e-12
+    measured = measure(TRUE)
+    first, same = (verify(prediction_of(TRUE), measured, seed=3) for _ in range(2))
+    xr.testing.assert_identical(first, same)
+    given = verify(prediction_of(TRUE), measured, seed=3, config=CONFIG)
+    xr.testing.assert_identical(first, given)
+    other = verify(prediction_of(TRUE), measured, seed=4)
+    assert (other["control_mismatch"] != first["control_mismatch"]).any()
+
+
+def test_noise_is_seen_as_such():
+    clean, noisy = (
+        verify(prediction_of(TRUE), measure(TRUE, noise=noise), noise=noise)
+        for noise in (0.0, 0.05)
+    )
+    assert noisy["p_value"] <= 0.05  # the local channels still tell
+    assert (noisy["mismatch"] > 0.02).all()
+    assert noisy["score"] > clean["score"]
+    blind = verify(prediction_of(TRUE), measure(TRUE, noise=1.0), noise=1.0)
+    assert blind.attrs["verdict"].startswith("Nothing can be said")
+
+
+def test_channels_of_noise_have_no_weight():
+    typical = np.array([[0.2, 0.2, 0.01, 0.01]])
+    squares = np.array([[0.0, 0.0, 1e-4, 1e-4]])
+    assert scores(squares, typical, 0.01) == 0
+    assert scores(squares, typical, 0.0) == pytest.approx(np.sqrt(0.5))
+    assert scores(typical**2, typical, 0.0) == pytest.approx(1.0)
+
+
+def test_the_table_says_it_all():
+    result = verify(prediction_of(TRUE), measure(TRUE), measure(TRUE, barrier=(9.0, 3.0)))
+    lines = table(result.assign_coords(measurement=["first.nc", "second.nc"]))
+    text = "\n".join(lines)
+    for word in ("first.nc", "second.nc", *CONDUCTANCES, "mean of V", result.attrs["verdict"]):
+        assert word in text
+    assert len(lines) == 1 + 8 + 2
+    assert max(len(line) for line in lines[:-1]) <= 100
+
+
+def changed(**attributes):
+    G = measure(TRUE, mu=0.1, B=0.5, bias=0.0)
+    G.attrs.update(attributes)
+    return G
+
+
+def lacking(name):
+    G = changed()
+    del G.attrs[name]
+    return G
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        ({"measurements": []}, "measurement must be one Dataset or more, but there is none"),
+        ({"measurements": [3]}, "measurement must be a Dataset, but it is 'int'"),
+        ({"measurements": changed().drop_vars("G_LR")}, "it lacks G_LR"),
+        ({"measurements": changed().isel(mu=0)}, "its dims are B, bias"),
+        ({"measurements": changed().expand_dims(realization=2)}, "realization"),
+        ({"measurements": lacking("theta")}, "must state theta, barrier, temperature"),
+        ({"measurements": lacking("barrier")}, "it lacks barrier"),
+        ({"measurements": changed(barrier=15.0)}, "must state two barriers"),
+        ({"measurements": changed(barrier="high")}, "must state two barriers"),
+        ({"measurements": changed(theta=30.0)}, "theta must be a number from -6.28"),
+        ({"measurements": changed(temperature=-1.0)}, "temperature must be"),
+        ({"measurements": (changed() * np.nan).assign_attrs(changed().attrs)}, "finite numbers"),
+        ({"prediction": xr.Dataset()}, "prediction must hold the potential"),
+        ({"prediction": None}, "prediction must hold the potential"),
+        ({"prediction": prediction_of(TRUE).expand_dims(realization=2)}, "the dims of potential"),
+        ({"prediction": prediction_of(TRUE).drop_vars("components")}, "hold the components"),
+        ({"prediction": prediction_of(TRUE).isel(site=slice(50)), "config": CONFIG}, "50 sites"),
+        (
+            {"prediction": prediction_of(TRUE).assign_attrs(config_hash="x"), "config": CONFIG},
+            "come from the model",
+        ),
+        ({"noise": -1.0}, "noise must be a number from 0 to 1 e²/h"),
+        ({"controls": 5}, "controls must be a number from 19"),
+        ({"shifts": [0.1, 0.0]}, "shifts must be a number or an increasing list"),
+        ({"seed": -1}, "seed must"),
+    ],
+)
+def test_bad_input_is_one_sentence(arguments, says):
+    usual = {"prediction": prediction_of(TRUE), "measurements": changed()}
+    with pytest.raises(ArgumentError, match=r"^Argument .* must .*, but .*\.$") as error:
+        dl.verify(**(usual | arguments))
+    assert says in str(error.value)
+
+
+def test_a_wire_of_another_length_is_a_prediction_like_any_other():
+    other = Nanowire(np.zeros(60))
+    assert verify(prediction_of(other), measure(TRUE))["p_value"] > 0.05
