@@ -35,7 +35,7 @@ STARTED := $(shell date +%s)
 .NOTPARALLEL:
 
 help: ## list the targets
-	@echo 'make TARGET [PRESET=small|shipped|smoke|paper] [PYTHON=/path/to/python3]'
+	@echo 'make TARGET [PRESET=small|shipped|smoke|full|paper] [PYTHON=/path/to/python3]'
 	@sed -n 's/^\([a-z-]*\):.*## /  \1\t/p' Makefile | expand -t 15
 	@echo 'and one figure each: $(FIGURES)'
 
@@ -45,7 +45,7 @@ $(READY):
 	@sh scripts/set_up.sh $@
 
 # What is complete stays as it is; the shipped model needs no dataset and no training.
-figures: $(if $(filter shipped,$(PRESET)),,evaluate) $(FIGURES) ## dataset, training and every figure of the paper, into build/figures
+figures: $(if $(wildcard $(CONFIG)),evaluate) $(FIGURES) ## dataset, training and every figure of the paper, into build/figures
 	@echo "make figures: done in $$(($$(date +%s) - $(STARTED))) s (PRESET=$(PRESET)), see build/figures"
 
 # Figure 1 is the paper's own network whatever the preset; --preset would draw the preset's.

@@ -122,6 +122,7 @@ def test_presets_without_ten_components_draw_the_shipped_ones_their_way():
     assert run.config.dataset.components == 10
     assert run.config.figures == chain.preset_run("smoke").config.figures
     assert not chain.preset_run("full", model=chain.TEN).shipped
+    assert chain.preset_run("full", model=chain.FIVE).shipped
     assert not chain.preset_run("small").shipped
 
 

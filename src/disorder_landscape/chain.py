@@ -2,9 +2,9 @@
 
 A run is a configuration and a folder of results: build/<name>/model, build/<name>/evaluation.nc.
 Its dataset is in build/datasets, which all runs and studies share. A preset has a run for each of
-the paper's two models: of five components and α, configs/<preset>.toml, and of ten components,
-configs/<preset>_ten_components.toml or, where there is none, the shipped network. What is shipped
-needs no dataset: models and test sets are in data_small.
+the paper's two models, of five components and α, configs/<preset>.toml, and of ten components,
+configs/<preset>_ten_components.toml; where there is no such file, the shipped network stands for
+it. What is shipped needs no dataset: models and test sets are in data_small.
 """
 
 from __future__ import annotations
@@ -99,8 +99,8 @@ def preset_run(preset: str, build: str | Path = "build", model: str = FIVE) -> R
     build : path
         Where the folder of the run is, or will be.
     model : {"five_components_and_alpha", "ten_components"}
-        Presets that have no configuration with ten components take the shipped network, and
-        draw it as they draw the other.
+        Presets that have a configuration of one of them only take the shipped network for the
+        other, and draw both alike.
 
     Raises
     ------
@@ -108,7 +108,7 @@ def preset_run(preset: str, build: str | Path = "build", model: str = FIVE) -> R
         If there is no such preset.
     """
     there = {path.stem for path in (REPOSITORY / "configs").glob("*.toml")}
-    presets = sorted(name for name in there if not name.endswith(TEN))
+    presets = sorted({name.removesuffix(f"_{TEN}") for name in there})
     must = f"be one of {', '.join([*presets, SHIPPED])}"
     require(preset in (*presets, SHIPPED), "preset", must, f"it is '{preset}'")
     name = preset if model == FIVE else f"{preset}_{model}"
@@ -117,8 +117,9 @@ def preset_run(preset: str, build: str | Path = "build", model: str = FIVE) -> R
     from disorder_landscape.learning.model import load_model_config
 
     config = load_model_config(shipped_model(model))
-    if preset != SHIPPED:
-        figures = load_config(REPOSITORY / "configs" / f"{preset}.toml").figures
+    other = {preset, f"{preset}_{TEN}"} & there
+    if other:
+        figures = load_config(REPOSITORY / "configs" / f"{other.pop()}.toml").figures
         config = config.model_copy(update={"figures": figures})
     return Run(model, config, Path(build) / SHIPPED / model, shipped=True)
 

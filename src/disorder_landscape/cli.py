@@ -235,7 +235,7 @@ def verify(
     controls: Annotated[int, typer.Option(help="Wires with wrong disorder, 19 or more.")] = 50,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the wrong disorder.")] = 0,
     shifts: Annotated[
-        str, typer.Option(help="Means of V in meV to try, which the network does not know.")
+        str, typer.Option(help="Shifts of V in meV to try, as of a gate's offset.")
     ] = "-0.03:0.03:13",
     output: Annotated[Path | None, typer.Option("--output", "-o", help="netCDF file.")] = None,
 ) -> None:

@@ -6,10 +6,11 @@ simulated at those settings and compared with the measurement, and so are wires 
 disorder of the same model, the controls. A prediction that explains no more than they do is wrong,
 or the model is.
 
-The mean of V is no label (S-II.1: it has a standard deviation of 0.01 meV), and predictions have
-none. It acts as a shift of μ, which an experiment would calibrate, and moves levels by more than
-kT. So each wire, control or not, is compared at the shift within ±0.03 meV that suits it best; the
-shift is found with the measurements at θ = 0, where there are any: they are simulated sooner.
+The mean of V is none of the paper's labels (S-II.1: it has a standard deviation of 0.01 meV), so
+that a prediction may lack it. It acts as a shift of μ, which an experiment would calibrate, and
+moves levels by more than kT. So each wire, control or not, is compared at the shift within
+±0.03 meV that suits it best; the shift is found with the measurements at θ = 0, where there are
+any: they are simulated sooner.
 """
 
 from __future__ import annotations
