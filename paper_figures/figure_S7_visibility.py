@@ -62,9 +62,10 @@ def draw(data: xr.Dataset) -> Figure:
         panels[row, i] = axes
     outer_labels(panels, "B", "mu")
     label_rows(panels, ROWS, "mu")
+    varies = len(np.unique(data["alpha"])) > 1
     for i, letter in enumerate(letters(data)):
         for row, axes in enumerate(panels[:, i]):
-            alpha = rf"$\alpha$ = {float(data['alpha'][i, row]):.2f} meV nm"
+            alpha = rf"$\alpha$ = {float(data['alpha'][i, row]):.2f} meV nm" if varies else ""
             axes.set_title(alpha if row else f"({letter})  {alpha}", loc="left")
     place = (FULL_WIDTH - RIGHT + 0.1, BOTTOM, 0.09, 2 * PANEL_HEIGHT + ROW_GAP)
     bar = colour_bar(figure, place, norm, VISIBILITY_COLOURS, data["T_IV"])

@@ -106,7 +106,7 @@ def test_a_measurement_on_another_grid_is_refused(run):
         predict(run.model_folder, G)
 
 
-@pytest.mark.parametrize(("model", "R2"), [(chain.FIVE, 0.99), (chain.TEN, 0.95)])
+@pytest.mark.parametrize(("model", "R2"), [(chain.FIVE, 0.99), (chain.TEN, 0.92)])
 def test_a_shipped_model_predicts_its_shipped_test_set(model, R2, tmp_path):
     shipped = chain.evaluation(chain.preset_run("shipped", tmp_path, model))
     assert shipped.sizes["realization"] == 200
