@@ -219,7 +219,7 @@ def _draw_maps(figure: Figure, data: xr.Dataset, top: float) -> None:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Make the figure's files."""
-    figure_script("figure_S10", data, draw, __doc__ or "", arguments)
+    figure_script(__file__, data, draw, __doc__ or "", arguments)
 
 
 if __name__ == "__main__":

@@ -48,6 +48,7 @@ def _mean(networks: Sequence[Any]) -> Any:
     keras = import_keras()
     for i, network in enumerate(networks):
         network.name = f"network_{i + 1}"
-    inputs = keras.Input(networks[0].input_shape[1:], name="conductance")
-    outputs = keras.layers.Average(name="labels")([network(inputs) for network in networks])
-    return keras.Model(inputs, outputs, name="disorder_landscape")
+    inputs = keras.Input(networks[0].inputs[0].shape[1:], name="conductance")
+    outputs = [network([inputs])[0] for network in networks]  # as saved, they take and give lists
+    mean = keras.layers.Average(name="labels")(outputs)
+    return keras.Model(inputs, mean, name="disorder_landscape")
