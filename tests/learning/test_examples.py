@@ -7,7 +7,7 @@ import pytest
 
 from disorder_landscape.config import TrainingConfig
 from disorder_landscape.learning.examples import Examples
-from disorder_landscape.learning.mirror import mirrored
+from disorder_landscape.learning.mirror import mirrored_conductance, mirrored_labels
 
 RNG = np.random.default_rng(5)
 X = RNG.normal(size=(6, 8, 8, 5, 4)).astype(np.float32)
@@ -28,7 +28,7 @@ def test_without_mirror_the_examples_are_the_wires():
 
 def test_mirror_images_stand_behind_the_wires():
     both = examples(mirror=True)
-    X_mirrored, Y_mirrored = mirrored(X, Y, 3)
+    X_mirrored, Y_mirrored = mirrored_conductance(X), mirrored_labels(Y, 3)
     which = np.array([2, 8, 11, 0])
     assert len(both) == 12
     np.testing.assert_array_equal(both.conductances(which), np.vstack([X, X_mirrored])[which])

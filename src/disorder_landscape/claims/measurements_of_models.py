@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import csv
 from functools import cache
 
 import numpy as np
 import xarray as xr
 
 from disorder_landscape.arguments import require
-from disorder_landscape.chain import REPOSITORY
+from disorder_landscape.chain import shipped_model, shipped_test_set
 from disorder_landscape.dataset.shards import VARIABLES
 from disorder_landscape.dataset.store import read_dataset
+from disorder_landscape.learning.curves import training_seconds
 from disorder_landscape.learning.metrics import Scores, score
 from disorder_landscape.learning.model import TrainedModel, load_model, load_model_config
 from disorder_landscape.learning.prediction import predict
@@ -21,7 +21,6 @@ from disorder_landscape.physics.parameters import FloatArray, Nanowire
 from disorder_landscape.physics.topology import topological_visibility
 from disorder_landscape.physics.transport import conductance
 
-DATA = REPOSITORY / "data_small"
 CHANNELS = {
     "all": CONDUCTANCES,
     "local": ("G_LL", "G_RR"),
@@ -91,17 +90,16 @@ def visibility_match(model: str, mean: str) -> float:
 
 def sets_and_training_hours(model: str) -> tuple[int, float]:
     """Return how many (realization, μ, B) a network's dataset has, and the hours of training."""
-    folder = DATA / "models" / model
+    folder = shipped_model(model)
     config = load_model_config(folder).dataset
-    with open(folder / "curves.csv", encoding="utf-8", newline="") as file:
-        seconds = sum(float(row["seconds"]) for row in csv.DictReader(file))
-    return config.realizations * config.mu_points * config.B_points, seconds / 3600
+    hours = training_seconds(folder / "curves.csv") / 3600
+    return config.realizations * config.mu_points * config.B_points, hours
 
 
 @cache
 def _loaded(model: str) -> tuple[xr.Dataset, TrainedModel]:
-    test = read_dataset(DATA / f"{model}_test.nc", VARIABLES)
-    return test, load_model(DATA / "models" / model)
+    test = read_dataset(shipped_test_set(model), VARIABLES)
+    return test, load_model(shipped_model(model))
 
 
 @cache

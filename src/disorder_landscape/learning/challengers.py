@@ -32,44 +32,20 @@ def residual(inputs: Any, filters: list[int], precision: str) -> Any:
     Keras tensor, shape (realization, feature)
     """
     layers = import_keras().layers
-    mu, B, bias, channels = inputs.shape[1:]
-    x = layers.Reshape((mu, B, bias * channels), dtype=precision)(inputs)
-    x = _convolution(x, filters[0], precision)
+    mu, B, _, _ = inputs.shape[1:]
+    x = _relu(_normalised(_flat_bias(inputs, (mu, B), precision), filters[0], precision), precision)
     for i, count in enumerate(filters):
         for j in range(BLOCKS):
             stride = 2 if i > 0 and j == 0 else 1
-            inner = _convolution(x, count, precision, stride)
-            inner = layers.Conv2D(
-                count,
-                3,
-                padding="same",
-                use_bias=False,
-                kernel_initializer="he_normal",
-                dtype=precision,
-            )(inner)
-            inner = layers.BatchNormalization(dtype=precision)(inner)
+            inner = _relu(_normalised(x, count, precision, stride), precision)
+            inner = _normalised(inner, count, precision)
             if stride > 1:
                 x = layers.AveragePooling2D(stride, padding="same", dtype=precision)(x)
             if x.shape[-1] != count:
                 x = layers.Conv2D(count, 1, use_bias=False, dtype=precision)(x)
-            x = layers.Activation("relu", dtype=precision)(layers.Add(dtype=precision)([x, inner]))
+            x = _relu(layers.Add(dtype=precision)([x, inner]), precision)
     x = layers.Flatten(dtype=precision)(x)
     return layers.Dense(NODES, activation="relu", dtype=precision)(x)
-
-
-def _convolution(x: Any, filters: int, precision: str, stride: int = 1) -> Any:
-    layers = import_keras().layers
-    x = layers.Conv2D(
-        filters,
-        3,
-        stride,
-        padding="same",
-        use_bias=False,
-        kernel_initializer="he_normal",
-        dtype=precision,
-    )(x)
-    x = layers.BatchNormalization(dtype=precision)(x)
-    return layers.Activation("relu", dtype=precision)(x)
 
 
 def recurrent(inputs: Any, filters: list[int], precision: str) -> Any:
@@ -93,11 +69,36 @@ def recurrent(inputs: Any, filters: list[int], precision: str) -> Any:
     Keras tensor, shape (realization, feature)
     """
     layers = import_keras().layers
-    mu, B, bias, channels = inputs.shape[1:]
-    x = layers.Reshape((mu * B, bias * channels), dtype=precision)(inputs)
+    mu, B, _, _ = inputs.shape[1:]
+    x = _flat_bias(inputs, (mu * B,), precision)
     x = layers.EinsumDense(
         "rsx,xf->rsf", (mu * B, filters[0]), bias_axes="sf", dtype=precision, name="measurement"
     )(x)
     x = layers.LSTM(filters[0], return_sequences=True, dtype=precision)(x)
     x = layers.LSTM(filters[0], dtype=precision)(x)
     return layers.Dense(NODES, activation="relu", dtype=precision)(x)
+
+
+def _flat_bias(inputs: Any, places: tuple[int, ...], precision: str) -> Any:
+    """Return the conductances of all V_bias side by side, shape (realization, *places, feature)."""
+    bias, channels = inputs.shape[3:]
+    return import_keras().layers.Reshape((*places, bias * channels), dtype=precision)(inputs)
+
+
+def _normalised(x: Any, filters: int, precision: str, stride: int = 1) -> Any:
+    """Return a 3×3 convolution, normalised over the batch."""
+    layers = import_keras().layers
+    x = layers.Conv2D(
+        filters,
+        3,
+        stride,
+        padding="same",
+        use_bias=False,
+        kernel_initializer="he_normal",
+        dtype=precision,
+    )(x)
+    return layers.BatchNormalization(dtype=precision)(x)
+
+
+def _relu(x: Any, precision: str) -> Any:
+    return import_keras().layers.Activation("relu", dtype=precision)(x)

@@ -54,6 +54,11 @@ def read_curves(path: Path) -> list[Epoch]:
         ]
 
 
+def training_seconds(path: Path) -> float:
+    """Return how long the training took whose curves are in this file."""
+    return sum(epoch.seconds for epoch in read_curves(path))
+
+
 def plot_curves(path: Path, curves: list[Epoch]) -> None:
     """Draw loss and 1 − R² over the epochs, on a logarithmic axis; path decides PDF or PNG."""
     figure = Figure(figsize=(3.404, 2.4), layout="constrained")

@@ -32,10 +32,3 @@ def mirrored_labels(Y: FloatArray, components: int) -> FloatArray:
     sign = np.ones(Y.shape[-1])
     sign[0:components:2] = -1  # c₁, c₃, …
     return sign * Y
-
-
-def mirrored(
-    X: ConductanceArray, Y: FloatArray, components: int
-) -> tuple[ConductanceArray, FloatArray]:
-    """Return conductance and labels of the mirrored wires; twice mirrored is unchanged."""
-    return mirrored_conductance(X), mirrored_labels(Y, components)

@@ -10,7 +10,7 @@ from tqdm import tqdm
 from disorder_landscape.chain import dataset_folder
 from disorder_landscape.dataset import shards
 from disorder_landscape.files import read_json
-from disorder_landscape.learning.curves import read_curves
+from disorder_landscape.learning.curves import training_seconds
 from disorder_landscape.studies.plan import PlannedRun, Study
 from disorder_landscape.studies.table import Result, read_table, write_table
 
@@ -89,5 +89,5 @@ def _result(run: PlannedRun, folder: Path) -> Result:
         R2=metrics["r2"],
         delta_V=metrics["delta_V"],
         delta_alpha=metrics["delta_alpha"],
-        minutes=round(sum(epoch.seconds for epoch in read_curves(folder / "curves.csv")) / 60, 2),
+        minutes=round(training_seconds(folder / "curves.csv") / 60, 2),
     )
