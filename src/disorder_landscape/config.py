@@ -122,7 +122,7 @@ class TrainingConfig(_Section):
     """How the network is trained (S-II.2)."""
 
     realizations: Positive | None = None
-    """How many of the training realizations are used; none takes all."""
+    """How many of the training realizations are used, drawn by the seed; none takes all."""
     epochs: tuple[Positive, ...] = (15, 15, 10, 5)
     """Epochs of each set; the learning rate is divided by 10 from set to set."""
     passes: Positive = 1

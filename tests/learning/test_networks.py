@@ -110,9 +110,10 @@ def test_challengers_take_any_grid_and_learn(architecture, grid):
 def test_the_residual_networks_widths():
     network = build_network((15, 15, 5, 4), 6, 0.0625, architecture="residual")
     kernels = [layer.kernel_size for layer in network.layers if hasattr(layer, "filters")]
-    assert kernels.count((3, 3)) == 1 + 3 * 2 * 2  # the stem, two in each of two blocks a set
+    assert kernels.count((2, 2)) == 1  # the patches
+    assert kernels.count((3, 3)) == 2 * 2 * 2  # two in each of two blocks a set
     filters = {layer.filters for layer in network.layers if hasattr(layer, "filters")}
-    assert filters == {16, 32, 64}
+    assert filters == {16, 32}
 
 
 def test_the_order_of_measurements_matters_to_the_recurrent_network():

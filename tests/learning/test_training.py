@@ -11,7 +11,7 @@ import pytest
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.learning import training
 from disorder_landscape.learning.curves import read_curves
-from disorder_landscape.learning.examples import first, split
+from disorder_landscape.learning.examples import chosen, split
 from disorder_landscape.learning.model import load_model
 from disorder_landscape.learning.scaling import conductance_array
 from disorder_landscape.learning.schedule import learning_rate, numbered_epochs
@@ -158,20 +158,27 @@ def test_a_dataset_too_small_to_split_is_refused(realizations, fraction):
         split(realizations, fraction)
 
 
-def test_only_the_first_training_realizations_are_used_where_so_many_are_asked_for(tmp_path):
-    """What is beyond them may be anything, but for the test set."""
+def test_only_as_many_training_realizations_are_used_as_are_asked_for(tmp_path):
+    """What the others are may be anything, but for the test set."""
     config = tiny_config(realizations=40, width_fraction=0.01, epochs=(1,))
     used = config.training.model_copy(update={"realizations": 20})
     config = config.model_copy(update={"training": used})
     dataset = synthetic_dataset(config)
     changed = dataset.copy(deep=True)
-    changed["G_LL"][20:36] += 1.0
+    unused = np.setdiff1d(np.arange(36), chosen(slice(0, 36), 20, config.training.seed))
+    changed["G_LL"][unused] += 1.0
     one = train(dataset, config, tmp_path / "one", progress=False)
     assert train(changed, config, tmp_path / "other", progress=False) == one
-    assert first(slice(0, 36), 20) == slice(0, 20)
-    assert first(slice(0, 36), None) == slice(0, 36)
+
+
+def test_fewer_training_realizations_are_among_more_and_differ_by_seed():
+    few, more = (chosen(slice(4, 40), n, seed=1) for n in (10, 20))
+    assert len(more) == 20
+    assert set(few) < set(more) < set(range(4, 40))
+    assert set(few) != set(chosen(slice(4, 40), 10, seed=2))
+    assert chosen(slice(4, 40), None, seed=1) == slice(4, 40)
     with pytest.raises(ArgumentError, match="at most 36"):
-        first(slice(0, 36), 37)
+        chosen(slice(4, 40), 37, seed=1)
 
 
 def test_passes_are_epochs_without_a_validation_in_between(tmp_path, monkeypatch):

@@ -7,7 +7,9 @@ from typing import Any
 from disorder_landscape.learning.backend import import_keras
 
 BLOCKS = 2
-"""Residual blocks in each of the three sets."""
+"""Residual blocks in each of the two sets."""
+PATCH = 2
+"""Points of μ and of B that the first convolution takes at a time."""
 NODES = 500
 """Nodes of the dense layer before the output, as in the paper's network."""
 
@@ -15,15 +17,16 @@ NODES = 500
 def residual(inputs: Any, filters: list[int], precision: str) -> Any:
     """Return the features of a residual network over the (μ, B) plane.
 
-    The conductances of all V_bias are channels of one image. Three sets of residual blocks (He et
-    al., CVPR 2016: two 3×3 convolutions each, added to what goes in), the later ones at half and
-    at a quarter of the resolution, then a dense layer that sees every point of what is left.
+    The conductances of all V_bias are channels of one image, and the first convolution takes 2×2
+    points of it at a time, which makes all others four times cheaper. Two sets of residual blocks
+    (He et al., CVPR 2016: two 3×3 convolutions each, added to what goes in), the second at half
+    the resolution, then a dense layer that sees every point of what is left.
 
     Parameters
     ----------
     inputs : Keras tensor, shape (realization, mu, B, bias, channel)
-    filters : three int
-        Of the convolutions of each set.
+    filters : list of int
+        The first two are those of the convolutions of each set.
     precision : str
         A Keras dtype policy.
 
@@ -33,11 +36,12 @@ def residual(inputs: Any, filters: list[int], precision: str) -> Any:
     """
     layers = import_keras().layers
     mu, B, _, _ = inputs.shape[1:]
-    x = _relu(_normalised(_flat_bias(inputs, (mu, B), precision), filters[0], precision), precision)
-    for i, count in enumerate(filters):
+    x = _flat_bias(inputs, (mu, B), precision)
+    x = _relu(_normalised(x, filters[0], precision, kernel=PATCH, stride=PATCH), precision)
+    for i, count in enumerate(filters[:2]):
         for j in range(BLOCKS):
             stride = 2 if i > 0 and j == 0 else 1
-            inner = _relu(_normalised(x, count, precision, stride), precision)
+            inner = _relu(_normalised(x, count, precision, stride=stride), precision)
             inner = _normalised(inner, count, precision)
             if stride > 1:
                 x = layers.AveragePooling2D(stride, padding="same", dtype=precision)(x)
@@ -85,12 +89,12 @@ def _flat_bias(inputs: Any, places: tuple[int, ...], precision: str) -> Any:
     return import_keras().layers.Reshape((*places, bias * channels), dtype=precision)(inputs)
 
 
-def _normalised(x: Any, filters: int, precision: str, stride: int = 1) -> Any:
-    """Return a 3×3 convolution, normalised over the batch."""
+def _normalised(x: Any, filters: int, precision: str, kernel: int = 3, stride: int = 1) -> Any:
+    """Return a convolution, normalised over the batch."""
     layers = import_keras().layers
     x = layers.Conv2D(
         filters,
-        3,
+        kernel,
         stride,
         padding="same",
         use_bias=False,

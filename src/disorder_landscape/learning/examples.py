@@ -83,8 +83,10 @@ def split(realizations: int, test_fraction: float) -> tuple[slice, slice]:
     return slice(0, realizations - test), slice(realizations - test, realizations)
 
 
-def first(training: slice, realizations: int | None) -> slice:
-    """Return the first training realizations, or all of them where no number is asked for.
+def chosen(training: slice, realizations: int | None, seed: int) -> slice | NDArray[np.intp]:
+    """Return as many training realizations, drawn by the seed; all of them if none is asked for.
+
+    Those of a smaller number are among those of a larger one.
 
     Raises
     ------
@@ -96,4 +98,5 @@ def first(training: slice, realizations: int | None) -> slice:
     there = training.stop - training.start
     must = f"be at most {there}, the number of training realizations"
     require(realizations <= there, "training.realizations", must, f"it is {realizations}")
-    return slice(training.start, training.start + realizations)
+    order = np.random.default_rng(seed).permutation(np.arange(training.start, training.stop))
+    return np.sort(order[:realizations])

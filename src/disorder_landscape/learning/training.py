@@ -24,7 +24,7 @@ from disorder_landscape.learning.checkpoints import (
 )
 from disorder_landscape.learning.curves import Epoch, plot_curves, write_curves
 from disorder_landscape.learning.ensembles import combine, member_configs
-from disorder_landscape.learning.examples import Examples, first, split
+from disorder_landscape.learning.examples import Examples, chosen, split
 from disorder_landscape.learning.metrics import Scores, score
 from disorder_landscape.learning.model import METRICS, TrainedModel, check_grid
 from disorder_landscape.learning.networks import build_network
@@ -82,7 +82,7 @@ def train(
     require(made_with == config.dataset.hash, "dataset", "be the one the config describes", but)
     check_grid(dataset, config.dataset, "dataset")
     training, test = split(dataset.sizes["realization"], config.training.test_fraction)
-    training = first(training, config.training.realizations)
+    used = chosen(training, config.training.realizations, config.training.seed)
     X = conductance_array(dataset)
     Y = label_array(dataset, names_of_labels(config))
     claim(folder, config, dataset, command)
@@ -96,7 +96,7 @@ def train(
         return score(Y[test], predicted, model.labels, config.dataset.sites)
 
     if config.training.networks == 1:
-        examples = Examples(X[training], Y[training], config.dataset.components, config.training)
+        examples = Examples(X[used], Y[used], config.dataset.components, config.training)
         model, curves = _train_one(examples, config, folder, scores, progress)
     else:
         folders = [folder / f"network-{i + 1}" for i in range(config.training.networks)]

@@ -64,12 +64,12 @@ def model_folder(run: PlannedRun, build: Path) -> Path:
 
 
 def _result(run: PlannedRun, folder: Path) -> Result:
-    from disorder_landscape.learning.examples import first, split
+    from disorder_landscape.learning.examples import split
     from disorder_landscape.learning.model import load_model
 
     dataset, network, training = run.config.dataset, run.config.network, run.config.training
     metrics = read_json(folder / "metrics.json")
-    used = first(split(dataset.realizations, training.test_fraction)[0], training.realizations)
+    used = training.realizations or split(dataset.realizations, training.test_fraction)[0].stop
     weights = load_model(folder).network.trainable_weights
     return Result(
         name=run.name,
@@ -77,7 +77,7 @@ def _result(run: PlannedRun, folder: Path) -> Result:
         dataset=dataset.hash,
         components=dataset.components,
         amplitude=dataset.amplitude,
-        realizations=used.stop - used.start,
+        realizations=used,
         test_realizations=metrics["realizations"],
         architecture=network.architecture,
         width_fraction=network.width_fraction,
