@@ -11,7 +11,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.stats import spearmanr
 
 from disorder_landscape import ArgumentError, Nanowire, conductance
 from disorder_landscape.chain import REPOSITORY
@@ -359,7 +358,7 @@ def test_the_fit_of_figure_2_is_derived_from_the_learning_curves(learning_curves
 def test_half_of_the_filters_is_derived_from_the_widths(tmp_path):
     rows = [
         (n, 100, width, seed, 0.77 - loss * (width == 0.5) + 0.01 * seed)
-        for n, loss in ((3, 0.002), (5, 0.006), (8, 0.004))
+        for n, loss in ((3, 0.002), (4, 0.001), (5, 0.006), (7, 0.003), (8, 0.004))
         for width in (0.5, 1.0)
         for seed in (0, 1)
     ]
@@ -367,7 +366,7 @@ def test_half_of_the_filters_is_derived_from_the_widths(tmp_path):
     loss = DERIVED["loss_of_halving"](tmp_path / "network_width.csv")
     assert loss == pytest.approx(0.006)
     p = DERIVED["halving_independent_of_components"](tmp_path / "network_width.csv")
-    assert p == pytest.approx(spearmanr([1, 2, 3], [1, 3, 2]).pvalue)
+    assert p == pytest.approx(42 / 120)  # orders of five whose |ρ| is at least 0.6
 
 
 @pytest.mark.parametrize("name", DERIVED)

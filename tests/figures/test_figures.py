@@ -24,10 +24,12 @@ from plotting import COLUMN, FULL_WIDTH, paper_style
 
 SCRIPTS = {
     "figure_1": "figure_1_network",
+    "figure_2": "figure_2_scaling",
     "figure_3": "figure_3_conductance_bias",
     "figure_4": "figure_4_disorder",
     "figure_5": "figure_5_alpha",
     "figure_S1": "figure_S1_device",
+    "figure_S2": "figure_S2_network_width",
     "figure_S3": "figure_S3_components",
     "figure_S4": "figure_S4_ten_components",
     "figure_S5": "figure_S5_conductance_mu",
@@ -36,6 +38,7 @@ SCRIPTS = {
     "figure_S8": "figure_S8_visibility_ten",
     "figure_S9": "figure_S9_pristine",
     "figure_S10": "figure_S10_verification",
+    "figure_S11": "figure_S11_learning_curves",
 }
 CONDUCTANCES = ("G_LL", "G_RR", "G_LR", "G_RL")
 

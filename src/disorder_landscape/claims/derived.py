@@ -9,48 +9,49 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from scipy.stats import linregress, spearmanr
+from scipy.stats import permutation_test, spearmanr
 
 from disorder_landscape.claims.claim import ResultMissingError
 from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.studies.crossings import (
+    R2_AIMED_AT,
+    fit_power_law,
+    learning_curves,
+    realizations_needed,
+)
 from disorder_landscape.studies.table import read_table
 
 FINE_TUNED = 10
 """Component count that the paper leaves out of its second fit of Fig. 2."""
-R2_AIMED_AT = 0.77
-"""Of Figs. 2 and S2."""
 
 
 def fig2_prefactor(table: Path) -> float:
     """Return A of the realizations A·n^p that are needed for R² = 0.77."""
-    return float(np.exp(_straight_line(*_log_crossings(table)).intercept))
+    return fit_power_law(*_needed(table)).prefactor
 
 
 def fig2_exponent(table: Path) -> float:
     """Return p of the same."""
-    return float(_straight_line(*_log_crossings(table)).slope)
+    return fit_power_law(*_needed(table)).exponent
 
 
 def fig2_fit(table: Path) -> float:
     """Return R² of this fit, on logarithmic axes."""
-    return float(_straight_line(*_log_crossings(table)).rvalue ** 2)
+    return fit_power_law(*_needed(table)).R2
 
 
 def fig2_fit_without_ten(table: Path) -> float:
     """Return R² of the fit to all component counts but ten."""
-    log_n, log_needed = _log_crossings(table)
-    kept = log_n != np.log(FINE_TUNED)
-    return float(_straight_line(log_n[kept], log_needed[kept]).rvalue ** 2)
+    n, needed = _needed(table)
+    return fit_power_law(n[n != FINE_TUNED], needed[n != FINE_TUNED]).R2
 
 
 def fig2_power_minus_exponential(table: Path) -> float:
     """Return R² of this fit minus that of an exponential, both of log(realizations)."""
-    log_n, log_needed = _log_crossings(table)
-    exponential = _straight_line(np.exp(log_n), log_needed)
-    return fig2_fit(table) - float(exponential.rvalue**2)
+    n, needed = _needed(table)
+    return fig2_fit(table) - fit_power_law(np.exp(n), needed).R2
 
 
 def gain_of_last_step(table: Path) -> float:
@@ -74,11 +75,18 @@ def loss_of_halving(table: Path) -> float:
 
 
 def halving_independent_of_components(table: Path) -> float:
-    """Return the p-value of Spearman's rank correlation of component counts with these losses."""
+    """Return the p-value of Spearman's rank correlation of component counts with these losses.
+
+    Of all orders that the losses could have, the share with as strong a correlation. Fewer than
+    five counts could not show one at 5 %.
+    """
     n, loss = _losses_of_halving(table)
-    if n.size < 3:
-        raise ResultMissingError(f"{table.name} has no three component counts")
-    return float(spearmanr(n, loss).pvalue)
+    if n.size < 5:
+        raise ResultMissingError(f"{table.name} has no five component counts")
+    orders = permutation_test(
+        (loss,), lambda x: spearmanr(n, x).statistic, permutation_type="pairings", n_resamples=10**4
+    )
+    return float(orders.pvalue)
 
 
 DERIVED: dict[str, Callable[[Path], float]] = {
@@ -97,37 +105,12 @@ DERIVED: dict[str, Callable[[Path], float]] = {
 """What a claim can name, by name."""
 
 
-def _log_crossings(table: Path) -> tuple[FloatArray, FloatArray]:
-    """Return logarithms of component counts and of the realizations that each needs.
-
-    Geometric means over seeds, each interpolated in its learning curve, linearly in log(size).
-    Component counts of which a seed's curve does not cross R² = 0.77 are left out.
-    """
-    curves: dict[int, dict[int, dict[int, float]]] = defaultdict(lambda: defaultdict(dict))
-    for one in read_table(table):
-        curves[one.components][one.seed][one.realizations] = one.R2
-    crossings: dict[int, float] = {}
-    for components, seeds in sorted(curves.items()):
-        logs = [_log_crossing(dict(sorted(curve.items()))) for curve in seeds.values()]
-        if np.isfinite(logs).all():
-            crossings[components] = float(np.mean(logs))
-    if len(crossings) < 3:
+def _needed(table: Path) -> tuple[FloatArray, FloatArray]:
+    """Return component counts and the realizations that each needs, as Fig. 2 shows them."""
+    n, needed = realizations_needed(learning_curves(read_table(table)))
+    if len(n) < 3:
         raise ResultMissingError(f"{table.name} has no three crossings of R² = {R2_AIMED_AT}")
-    return np.log(list(crossings)), np.array(list(crossings.values()))
-
-
-def _log_crossing(curve: dict[int, float]) -> float:
-    """Return log(size) at which a learning curve first reaches R² = 0.77, NaN if nowhere."""
-    log_size, R2 = np.log(list(curve)), np.maximum.accumulate(list(curve.values()))
-    if not R2[0] < R2_AIMED_AT <= R2[-1]:
-        return float("nan")
-    after = int(np.argmax(R2 >= R2_AIMED_AT))
-    return float(np.interp(R2_AIMED_AT, R2[after - 1 : after + 1], log_size[after - 1 : after + 1]))
-
-
-def _straight_line(x: FloatArray, y: FloatArray) -> Any:
-    """Return SciPy's fit of a straight line: slope, intercept, rvalue."""
-    return linregress(x, y)
+    return n, needed
 
 
 def _losses_of_halving(table: Path) -> tuple[FloatArray, FloatArray]:
