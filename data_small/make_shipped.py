@@ -1,7 +1,7 @@
 """Make the shipped models and test sets from their runs, and SHA256SUMS of all data.
 
-Run from the repository's root, once the runs are evaluated (`make evaluate`, and the ten-component
-run as data_small/README.md says): python data_small/make_shipped.py
+Run from the repository's root, once the runs are evaluated (`make evaluate PRESET=full` and
+`make evaluate PRESET=full_ten_components`): python data_small/make_shipped.py
 """
 
 import hashlib
@@ -9,8 +9,7 @@ import shutil
 from pathlib import Path
 
 from disorder_landscape.chain import (
-    FIVE,
-    TEN,
+    MODELS,
     Run,
     preset_run,
     read_test_set,
@@ -19,8 +18,8 @@ from disorder_landscape.chain import (
 )
 from disorder_landscape.dataset.store import provenance, write_dataset
 
-PRESETS = {FIVE: "small", TEN: "full"}
-"""Whose run of each model is shipped."""
+PRESET = "full"
+"""Whose runs are shipped."""
 TEST_REALIZATIONS = 200
 MODEL_FILES = ("network.keras", "scaler.json", "config.json", "metrics.json", "curves.csv")
 DATA = Path(__file__).parent
@@ -57,6 +56,6 @@ def write_sums() -> None:
 
 
 if __name__ == "__main__":
-    for model, preset in PRESETS.items():
-        ship(preset_run(preset, model=model), model)
+    for model in MODELS:
+        ship(preset_run(PRESET, model=model), model)
     write_sums()

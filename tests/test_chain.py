@@ -106,7 +106,7 @@ def test_a_measurement_on_another_grid_is_refused(run):
         predict(run.model_folder, G)
 
 
-@pytest.mark.parametrize(("model", "R2"), [(chain.FIVE, 0.99), (chain.TEN, 0.92)])
+@pytest.mark.parametrize(("model", "R2"), [(chain.FIVE, 0.99), (chain.TEN, 0.96)])
 def test_a_shipped_model_predicts_its_shipped_test_set(model, R2, tmp_path):
     shipped = chain.evaluation(chain.preset_run("shipped", tmp_path, model))
     assert shipped.sizes["realization"] == 200
@@ -122,7 +122,7 @@ def test_presets_without_ten_components_draw_the_shipped_ones_their_way():
     assert run.config.dataset.components == 10
     assert run.config.figures == chain.preset_run("smoke").config.figures
     assert not chain.preset_run("full", model=chain.TEN).shipped
-    assert chain.preset_run("full", model=chain.FIVE).shipped
+    assert not chain.preset_run("full", model=chain.FIVE).shipped
     assert not chain.preset_run("small").shipped
 
 
