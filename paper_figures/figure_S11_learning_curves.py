@@ -8,50 +8,25 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
 import xarray as xr
-from matplotlib import colormaps
 from matplotlib.figure import Figure
 
 from command import Request, figure_script
-from disorder_landscape.studies.crossings import R2_AIMED_AT, learning_curves
 from disorder_landscape.studies.table import read_table
 from figure_2_scaling import TABLE
-from plotting import FULL_WIDTH, inches
+from plotting import FULL_WIDTH, draw_trainings, inches, trainings
 
 
 def data(request: Request) -> xr.Dataset:
     """Return components, realizations, seed and R2 of every training (training)."""
-    curves = learning_curves(read_table(TABLE))
-    rows = [
-        (curve.components, size, seed, curve.R2[i, j])
-        for curve in curves
-        for i, seed in enumerate(curve.seeds)
-        for j, size in enumerate(curve.realizations)
-    ]
-    components, realizations, seed, R2 = map(np.array, zip(*rows, strict=True))
-    return xr.Dataset(
-        {
-            "components": ("training", components),
-            "realizations": ("training", realizations.astype(int)),
-            "seed": ("training", seed),
-            "R2": ("training", R2),
-        }
-    )
+    return trainings(read_table(TABLE), ["realizations"])
 
 
 def draw(data: xr.Dataset) -> Figure:
     """Draw the figure."""
     figure = Figure(figsize=(FULL_WIDTH, 2.8))
     axes = inches(figure, 0.52, 0.42, FULL_WIDTH - 1.5, 2.28)
-    numbers = np.unique(data["components"])
-    colours = colormaps["viridis"](np.linspace(0.0, 0.9, len(numbers)))
-    for colour, n in zip(colours, numbers, strict=True):
-        of_n = data.isel(training=np.flatnonzero(data["components"] == n))
-        mean = of_n["R2"].groupby(of_n["realizations"]).mean()
-        axes.plot(of_n["realizations"], of_n["R2"], ".", color=colour, ms=4, alpha=0.6)
-        axes.plot(mean["realizations"], mean, "-", color=colour, lw=1, label=f"{n}")
-    axes.axhline(R2_AIMED_AT, color="0.4", ls=":", lw=1)
+    draw_trainings(axes, data, "realizations", lambda n, of_n: f"{n}")
     axes.set(xscale="log", xlabel="training realizations", ylabel="$R^2$ on test realizations")
     axes.set_ylim(max(0.0, float(data["R2"].min()) - 0.05), 1.0)
     axes.legend(title="components", loc="upper left", bbox_to_anchor=(1.0, 1.03))

@@ -12,41 +12,27 @@ from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
-from matplotlib import colormaps
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, NullLocator
 
 from command import Request, figure_script
 from disorder_landscape.chain import REPOSITORY
-from disorder_landscape.studies.crossings import R2_AIMED_AT
 from disorder_landscape.studies.table import read_table
-from plotting import COLUMN, inches
+from plotting import COLUMN, draw_trainings, inches, trainings
 
 TABLE = REPOSITORY / "claims" / "network_width.csv"
 
 
 def data(request: Request) -> xr.Dataset:
     """Return components, width_fraction, realizations, seed and R2 of every training (training)."""
-    results = read_table(TABLE)
-    names = ("components", "width_fraction", "realizations", "seed", "R2")
-    return xr.Dataset(
-        {name: ("training", np.array([getattr(one, name) for one in results])) for name in names}
-    )
+    return trainings(read_table(TABLE), ["width_fraction", "realizations"])
 
 
 def draw(data: xr.Dataset) -> Figure:
     """Draw the figure."""
     figure = Figure(figsize=(COLUMN, 2.7))
     axes = inches(figure, 0.52, 0.42, COLUMN - 0.62, 2.18)
-    numbers = np.unique(data["components"])
-    colours = colormaps["viridis"](np.linspace(0.0, 0.85, len(numbers)))
-    for colour, n in zip(colours, numbers, strict=True):
-        of_n = data.isel(training=np.flatnonzero(data["components"] == n))
-        mean = of_n["R2"].groupby(of_n["width_fraction"]).mean()
-        label = f"{n} ({int(of_n['realizations'][0]):,} realizations)"
-        axes.plot(of_n["width_fraction"], of_n["R2"], ".", color=colour, ms=4, alpha=0.6)
-        axes.plot(mean["width_fraction"], mean, "-", color=colour, lw=1, label=label)
-    axes.axhline(R2_AIMED_AT, color="0.4", ls=":", lw=1)
+    draw_trainings(axes, data, "width_fraction", _label)
     widths = np.unique(data["width_fraction"])
     axes.set(xscale="log", xlabel="fraction of the paper's filters", ylabel="$R^2$")
     axes.xaxis.set_major_locator(FixedLocator(widths))
@@ -54,6 +40,10 @@ def draw(data: xr.Dataset) -> Figure:
     axes.xaxis.set_minor_locator(NullLocator())
     axes.legend(title="components", loc="lower right")
     return figure
+
+
+def _label(n: int, of_n: xr.Dataset) -> str:
+    return f"{n} ({int(of_n['realizations'][0]):,} realizations)"
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
 
@@ -17,6 +17,9 @@ from matplotlib.collections import QuadMesh
 from matplotlib.colorbar import Colorbar
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
+
+from disorder_landscape.studies.crossings import R2_AIMED_AT
+from disorder_landscape.studies.table import Result
 
 COLUMN, FULL_WIDTH = 3.404, 7.06
 """REVTeX's widths in inches."""
@@ -55,6 +58,37 @@ def inches(figure: Figure, left: float, bottom: float, width: float, height: flo
     w, h = figure.get_size_inches()
     axes: Axes = figure.add_axes((left / w, bottom / h, width / w, height / h))
     return axes
+
+
+def trainings(results: Sequence[Result], names: Sequence[str]) -> xr.Dataset:
+    """Return some columns of a study's table, and components, seed and R2 (training)."""
+    columns = ("components", *names, "seed", "R2")
+    return xr.Dataset(
+        {name: ("training", np.array([getattr(one, name) for one in results])) for name in columns}
+    )
+
+
+def draw_trainings(axes: Axes, data: xr.Dataset, over: str, label: Callable[..., str]) -> None:
+    """Draw R² of trainings: dots, and a line through the mean over seeds per component count.
+
+    Parameters
+    ----------
+    axes : Axes
+    data : Dataset
+        From `trainings`.
+    over : str
+        The variable on the horizontal axis.
+    label : callable
+        Told a component count and its trainings, returns what the legend says.
+    """
+    numbers = np.unique(data["components"])
+    colours = mpl.colormaps["viridis"](np.linspace(0.0, 0.9, len(numbers)))
+    for colour, n in zip(colours, numbers, strict=True):
+        of_n = data.isel(training=np.flatnonzero(data["components"] == n))
+        mean = of_n["R2"].groupby(of_n[over]).mean()
+        axes.plot(of_n[over], of_n["R2"], ".", color=colour, ms=4, alpha=0.6)
+        axes.plot(mean[over], mean, "-", color=colour, lw=1, label=label(n, of_n))
+    axes.axhline(R2_AIMED_AT, color="0.4", ls=":", lw=1)
 
 
 def write(figure: Figure, left: float, top: float, text: str, ha: str = "left") -> None:
