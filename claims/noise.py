@@ -16,13 +16,11 @@ import hashlib
 from pathlib import Path
 
 import pandas as pd
+import xarray as xr
 
-from disorder_landscape.chain import REPOSITORY, dataset_folder
-from disorder_landscape.config import Config
-from disorder_landscape.dataset import shards
+from disorder_landscape.chain import REPOSITORY, Run, read_test_set
 from disorder_landscape.dataset.store import provenance
 from disorder_landscape.files import replacing, write_json
-from disorder_landscape.learning.examples import split
 from disorder_landscape.learning.model import load_model
 from disorder_landscape.studies.noise import r2_with_errors
 from disorder_landscape.studies.plan import PlannedRun, load_study
@@ -33,18 +31,15 @@ CLEAN = "residual"
 """The run of recipes.toml that is trained like the noisy ones, but with the experiment's errors."""
 
 
-def rows(run: PlannedRun, build: Path, training: str) -> pd.DataFrame:
+def rows(run: PlannedRun, build: Path, wires: xr.Dataset, training: str) -> pd.DataFrame:
     """Return R² of one training over the errors of the test wires."""
-    config: Config = run.config
-    _, test = split(config.dataset.realizations, config.training.test_fraction)
-    folder = dataset_folder(config.dataset, build)
-    wires = shards.read_shards(config.dataset, folder, test.start)
+    noise = run.config.training.noise
     R2 = r2_with_errors(load_model(model_folder(run, build)), wires)
     table = R2.round(4).to_dataframe().reset_index()
     table.insert(0, "training", training)
-    table.insert(1, "training_noise", config.training.noise)
+    table.insert(1, "training_noise", noise)
     if training == "noisy":  # as the test wires, not less and not more
-        table = table[table["noise"] == config.training.noise]
+        table = table[table["noise"] == noise]
     return table
 
 
@@ -61,8 +56,10 @@ def main() -> None:
     clean = [run for run in load_study(STUDIES / "recipes.toml").runs if run.name == CLEAN]
     noisy = load_study(STUDIES / "noisy_training.toml").runs
     results = [carry_out(run, arguments.build, workers=2) for run in (*clean, *noisy)]
-    tables = [rows(run, arguments.build, "clean") for run in clean]
-    tables += [rows(run, arguments.build, "noisy") for run in noisy]
+    # All have the same test wires; a run's dataset is beside its folder.
+    wires = read_test_set(Run(CLEAN, clean[0].config, arguments.build / CLEAN))
+    tables = [rows(run, arguments.build, wires, "clean") for run in clean]
+    tables += [rows(run, arguments.build, wires, "noisy") for run in noisy]
     table = pd.concat(tables)
     with replacing(arguments.output) as temporary:
         table.to_csv(temporary, index=False)

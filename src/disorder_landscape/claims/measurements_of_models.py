@@ -16,17 +16,11 @@ from disorder_landscape.learning.metrics import Scores, score
 from disorder_landscape.learning.model import TrainedModel, load_model, load_model_config
 from disorder_landscape.learning.prediction import predict
 from disorder_landscape.learning.scaling import conductance_array, label_array
-from disorder_landscape.physics.labels import CONDUCTANCES
 from disorder_landscape.physics.parameters import FloatArray, Nanowire
 from disorder_landscape.physics.topology import topological_visibility
 from disorder_landscape.physics.transport import conductance
+from disorder_landscape.studies.noise import CHANNELS_WITH_ERRORS, with_errors
 
-CHANNELS = {
-    "all": CONDUCTANCES,
-    "local": ("G_LL", "G_RR"),
-    "nonlocal": ("G_LR", "G_RL"),
-}
-NOISE_SEED = 0
 VISIBILITY_POINTS = 61, 81
 """Grid of μ and B on which T_IV of inputs and predictions is compared."""
 
@@ -67,7 +61,7 @@ def conductance_match(model: str, channels: str, mean: str) -> float:
     """
     test, _ = _loaded(model)
     simulated = _simulated(model, mean)
-    return min(_r2(test[name], simulated[name]) for name in CHANNELS[channels])
+    return min(_r2(test[name], simulated[name]) for name in CHANNELS_WITH_ERRORS[channels])
 
 
 def visibility_match(model: str, mean: str) -> float:
@@ -106,10 +100,7 @@ def _loaded(model: str) -> tuple[xr.Dataset, TrainedModel]:
 def _predicted(model: str, noise: float, channels: str) -> FloatArray:
     """Return the labels that the network says, shape (realization, label)."""
     test, network = _loaded(model)
-    X = conductance_array(test)
-    rng = np.random.default_rng(NOISE_SEED)
-    noisy = [CONDUCTANCES.index(name) for name in CHANNELS[channels]]
-    X[..., noisy] += rng.normal(0.0, noise, X[..., noisy].shape).astype(np.float32)
+    X = with_errors(conductance_array(test), noise, CHANNELS_WITH_ERRORS[channels])
     return network.predict_labels(X)
 
 
