@@ -45,6 +45,14 @@ def test_every_combination_of_a_grid_is_a_run(plan):
     assert all(run.config.dataset.realizations == 100 for run in study.runs)
 
 
+def test_what_goes_together_goes_through_together(plan):
+    together = '[runs.together]\n"training.realizations" = [10, 20]\n"training.passes" = [4, 2]\n'
+    plan.write_text(PLAN.replace("[runs.grid]\n", together + "[runs.grid]\n"))
+    runs = [run.config.training for run in load_study(plan).runs[:12]]
+    assert [(run.realizations, run.passes) for run in runs] == [(10, 4)] * 6 + [(20, 2)] * 6
+    assert [run.seed for run in runs] == ([0] * 3 + [1] * 3) * 2
+
+
 def test_keys_tell_runs_apart_by_settings_and_not_by_name(plan):
     study = load_study(plan)
     keys = {run.key for run in study.runs}
@@ -67,6 +75,11 @@ def test_how_figures_are_drawn_does_not_matter_to_a_key(plan):
         ('"training.seed" = [0, 1]', '"training.seed" = [0, 0]', "must have different runs"),
         ("[base.training]", "[basis.training]", "unknown key basis"),
         ("title =", "title", "TOML"),
+        (
+            "[runs.grid]\n",
+            '[runs.together]\n"training.passes" = [1]\n"training.epochs" = []\n[runs.grid]\n',
+            "as long as each other",
+        ),
     ],
 )
 def test_a_plan_that_makes_no_sense_is_refused(plan, old, new, said):

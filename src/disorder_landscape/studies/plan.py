@@ -10,7 +10,7 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from disorder_landscape.arguments import require
 from disorder_landscape.config import Config, checked
@@ -24,8 +24,16 @@ class _Runs(BaseModel):
     name: str
     set: dict[str, dict[str, Any]] = Field(default_factory=dict)
     """Sections and keys of a configuration, instead of the base's."""
+    together: dict[str, list[Any]] = Field(default_factory=dict)
+    """Lists of values for "section.key", as long as each other, which go through together."""
     grid: dict[str, list[Any]] = Field(default_factory=dict)
-    """Lists of values for "section.key", of which every combination is a training."""
+    """Lists of values for "section.key"; every combination, also with `together`, is a training."""
+
+    @model_validator(mode="after")
+    def _as_long_as_each_other(self) -> _Runs:
+        if len({len(values) for values in self.together.values()}) > 1:
+            raise ValueError("together must have lists that are as long as each other")
+        return self
 
 
 class _Plan(BaseModel):
@@ -91,12 +99,14 @@ def load_study(path: str | Path) -> Study:
 
 
 def _expand(group: _Runs, base: Mapping[str, Any], path: Path) -> Iterator[PlannedRun]:
-    """Yield a training for every combination of the group's grid."""
-    for values in product(*group.grid.values()):
+    """Yield a training for every combination of the group's grid and what goes together."""
+    names = [*group.together, *group.grid]
+    together = list(zip(*group.together.values(), strict=True)) or [()]
+    for first, *others in product(together, *group.grid.values()):
         content = deepcopy(dict(base))
         for section, settings in group.set.items():
             content.setdefault(section, {}).update(settings)
-        for name, value in zip(group.grid, values, strict=True):
+        for name, value in zip(names, (*first, *others), strict=True):
             section, _, key = name.partition(".")
             content.setdefault(section, {})[key] = value
         yield PlannedRun(group.name, checked(Config, path, "study", content))
