@@ -131,6 +131,9 @@ class TrainingConfig(_Section):
     """"cosine" lets the learning rate fall along a cosine instead, step by step, in every set."""
     learning_rate: LearningRate = 1e-4
     """Learning rate of the first set, or the largest of the cosine."""
+    weight_decay: Annotated[float, Field(ge=0, le=10)] = 0.0
+    """Of AdamW (Loshchilov and Hutter, ICLR 2019): each step takes away this share of the weights,
+    times the learning rate. Without it, Adam."""
     batch_size: Positive = 32
     test_fraction: Annotated[float, Field(gt=0, lt=1)] = 0.1
     """The last realizations are the test set."""

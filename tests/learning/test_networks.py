@@ -116,6 +116,18 @@ def test_the_residual_networks_widths():
     assert filters == {16, 32}
 
 
+def test_weight_decay_takes_a_share_of_the_weights_at_each_step():
+    """Where the labels are met already there is no gradient, and nothing else changes them."""
+    network = build_network((8, 8, 5, 4), 3, 0.02, 0.1, weight_decay=0.5)
+    x = np.zeros((4, 8, 8, 5, 4), dtype=np.float32)
+    before = [weight.numpy() for weight in network.trainable_weights]
+    network.train_on_batch(x, network.predict_on_batch(x))
+    kernels = [weight for weight in before if weight.ndim > 1]
+    after = [weight.numpy() for weight in network.trainable_weights if len(weight.shape) > 1]
+    for one, other in zip(kernels, after, strict=True):
+        np.testing.assert_allclose(other, 0.95 * one, rtol=1e-5, atol=1e-7)
+
+
 def test_the_order_of_measurements_matters_to_the_recurrent_network():
     """Each measurement has its own place in K, though its weights are shared."""
     network = build_network((8, 8, 5, 4), 3, 0.02, architecture="recurrent")

@@ -30,8 +30,9 @@ def build_network(
     learning_rate: float = 1e-4,
     precision: str = "float32",
     architecture: str = "convolutional",
+    weight_decay: float = 0.0,
 ) -> Any:
-    """Return the compiled network: Adam and the mean squared error of standard-scaled labels.
+    """Return the compiled network: its optimizer and the mean squared error of scaled labels.
 
     Parameters
     ----------
@@ -47,6 +48,8 @@ def build_network(
         A Keras dtype policy: "float32" or "mixed_bfloat16". The output layer stays in float32.
     architecture : {"convolutional", "residual", "recurrent"}
         The paper's network, or one of `challengers`.
+    weight_decay : float
+        Of AdamW; 0 is Adam, as in the paper.
 
     Returns
     -------
@@ -69,7 +72,9 @@ def build_network(
     features = layers_of(inputs, filters, precision)
     labels = keras.layers.Dense(outputs, dtype="float32", name="labels")(features)
     network = keras.Model(inputs, labels, name="disorder_landscape")
-    network.compile(keras.optimizers.Adam(learning_rate), loss="mean_squared_error")
+    # Keras decouples the decay from the gradient, which makes this AdamW.
+    optimizer = keras.optimizers.Adam(learning_rate, weight_decay=weight_decay or None)
+    network.compile(optimizer, loss="mean_squared_error")
     return network
 
 

@@ -199,5 +199,6 @@ def _start_or_resume(
         config.training.learning_rate,
         config.training.precision,
         config.network.architecture,
+        config.training.weight_decay,
     )
     return TrainedModel(network, labels, inputs, config), []
