@@ -63,22 +63,20 @@ def write_json(path: Path, content: Mapping[str, Any]) -> None:
         temporary.write_text(json.dumps(content, indent=1, ensure_ascii=False) + "\n", "utf-8")
 
 
-def read_json(path: Path) -> dict[str, Any]:
+def read_json(path: Path, name: str, must: str) -> dict[str, Any]:
     """Read a JSON file that holds an object.
 
     Raises
     ------
     ArgumentError
-        If it cannot be read or holds something else.
+        If it cannot be read or holds something else: `name` must `must`.
     """
-    must = "be a folder written by `landscape train`"
     try:
         content = json.loads(path.read_text("utf-8"))
     except OSError as error:
         but = f"'{path}' cannot be read ({error.strerror})"
-        raise ArgumentError("model", must, but) from None
+        raise ArgumentError(name, must, but) from None
     except ValueError as error:
-        raise ArgumentError("model", must, f"'{path}' is not JSON: {error}") from None
-    if not isinstance(content, dict):
-        raise ArgumentError("model", must, f"'{path}' holds no JSON object")
-    return content
+        raise ArgumentError(name, must, f"'{path}' is not JSON: {error}") from None
+    require(isinstance(content, dict), name, must, f"'{path}' holds no JSON object")
+    return dict(content)

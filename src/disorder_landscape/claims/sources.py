@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import csv
 import hashlib
-import json
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from statistics import fmean, median
@@ -22,7 +21,7 @@ from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.claim import Claim, Measured, ResultMissingError, Stored
 from disorder_landscape.claims.derived import DERIVED
-from disorder_landscape.files import write_json
+from disorder_landscape.files import read_json, write_json
 
 MEASURED_FILE = "claims/measured.json"
 """What `make claims` has measured before, from the root of the repository."""
@@ -166,15 +165,7 @@ def _number(value: Any, source: Stored) -> float:
 
 
 def _read_json(path: Path) -> dict[str, Any]:
-    """Return the object of a JSON file, with a sentence that names the file where it is none."""
-    try:
-        content = json.loads(path.read_text("utf-8"))
-    except OSError as error:
-        raise ArgumentError(path.name, "be there", f"it is not ({error.strerror})") from None
-    except ValueError as error:
-        raise ArgumentError(path.name, "be JSON", f"it is not: {error}") from None
-    require(isinstance(content, dict), path.name, "hold a JSON object", "it holds something else")
-    return dict(content)
+    return read_json(path, path.name, "be a JSON file")
 
 
 def _check_sum(path: Path, expected: object, listed_in: str) -> None:

@@ -12,10 +12,16 @@ import xarray as xr
 
 from disorder_landscape.arguments import require
 from disorder_landscape.config import Config
-from disorder_landscape.files import read_json, replacing, write_json
+from disorder_landscape.files import replacing, write_json
 from disorder_landscape.learning.backend import import_keras
 from disorder_landscape.learning.curves import Epoch, read_curves, write_curves
-from disorder_landscape.learning.model import CONFIG, NETWORK, load_network, save_network
+from disorder_landscape.learning.model import (
+    CONFIG,
+    NETWORK,
+    load_network,
+    read_model_file,
+    save_network,
+)
 
 PACKAGES = ("disorder-landscape", "keras", "numpy", "scikit-learn")
 """Packages whose versions a model records, besides the Keras backend's."""
@@ -57,7 +63,7 @@ def claim(folder: Path, config: Config, dataset: xr.Dataset, command: str) -> No
         require(not used, "folder", must, f"'{folder}' holds something else")
         write_json(path, record)
         return
-    there = read_json(path)
+    there = read_model_file(path)
     for part, key, what in IDENTITY:
         same = there.get(part, {}).get(key) == record[part][key]
         require(same, "folder", must, f"'{folder}' holds one with another {what}")

@@ -114,7 +114,7 @@ def load_model(folder: str | Path) -> TrainedModel:
     finished = (folder / METRICS).exists()
     require(finished, "model", _MODEL, f"the training in '{folder}' is not finished")
     config = load_model_config(folder)
-    scaler = read_json(folder / SCALER)
+    scaler = read_model_file(folder / SCALER)
     try:
         labels = LabelScaler.from_dict(scaler["labels"])
         inputs = None if scaler["inputs"] is None else InputScaler.from_dict(scaler["inputs"])
@@ -123,9 +123,20 @@ def load_model(folder: str | Path) -> TrainedModel:
     return TrainedModel(load_network(folder / NETWORK), labels, inputs, config)
 
 
+def read_model_file(path: Path) -> dict[str, Any]:
+    """Read a JSON file of a model's folder.
+
+    Raises
+    ------
+    ArgumentError
+        If it cannot be read or holds no JSON object.
+    """
+    return read_json(path, "model", _MODEL)
+
+
 def load_model_config(folder: Path) -> Config:
     """Read the configuration a model was trained with from its folder."""
-    content: Mapping[str, Any] = read_json(folder / CONFIG)
+    content: Mapping[str, Any] = read_model_file(folder / CONFIG)
     try:
         return Config.model_validate(content.get("config"))
     except ValidationError as error:

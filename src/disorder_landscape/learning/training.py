@@ -14,7 +14,7 @@ from tqdm import tqdm
 
 from disorder_landscape.arguments import require
 from disorder_landscape.config import Config, TrainingConfig
-from disorder_landscape.files import read_json, write_json
+from disorder_landscape.files import write_json
 from disorder_landscape.learning.backend import import_keras
 from disorder_landscape.learning.checkpoints import (
     claim,
@@ -26,7 +26,7 @@ from disorder_landscape.learning.curves import Epoch, plot_curves, write_curves
 from disorder_landscape.learning.ensembles import combine, member_configs
 from disorder_landscape.learning.examples import Examples, chosen, split
 from disorder_landscape.learning.metrics import Scores, score
-from disorder_landscape.learning.model import METRICS, TrainedModel, check_grid
+from disorder_landscape.learning.model import METRICS, TrainedModel, check_grid, read_model_file
 from disorder_landscape.learning.networks import build_network
 from disorder_landscape.learning.scaling import (
     conductance_array,
@@ -89,7 +89,7 @@ def train(
     if (folder / METRICS).exists():
         if progress:
             tqdm.write(f"'{folder}' holds this very training, finished: nothing to do.")
-        return Scores.from_dict(read_json(folder / METRICS))
+        return Scores.from_dict(read_model_file(folder / METRICS))
 
     def scores(model: TrainedModel) -> Scores:
         predicted = model.predict_labels(X[test])

@@ -9,7 +9,6 @@ from tqdm import tqdm
 
 from disorder_landscape.chain import dataset_folder
 from disorder_landscape.dataset import shards
-from disorder_landscape.files import read_json
 from disorder_landscape.learning.curves import training_seconds
 from disorder_landscape.studies.plan import PlannedRun, Study
 from disorder_landscape.studies.table import Result, read_table, write_table
@@ -65,10 +64,10 @@ def model_folder(run: PlannedRun, build: Path) -> Path:
 
 def _result(run: PlannedRun, folder: Path) -> Result:
     from disorder_landscape.learning.examples import split
-    from disorder_landscape.learning.model import load_model
+    from disorder_landscape.learning.model import load_model, read_model_file
 
     dataset, network, training = run.config.dataset, run.config.network, run.config.training
-    metrics = read_json(folder / "metrics.json")
+    metrics = read_model_file(folder / "metrics.json")
     used = training.realizations or split(dataset.realizations, training.test_fraction)[0].stop
     weights = load_model(folder).network.trainable_weights
     return Result(
