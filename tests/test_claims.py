@@ -23,6 +23,7 @@ from disorder_landscape.claims import (
     table,
 )
 from disorder_landscape.claims.claim import Claim, ResultMissingError, load_claims
+from disorder_landscape.claims.conventions import conventions_table
 from disorder_landscape.claims.derived import DERIVED
 from disorder_landscape.claims.findings import stored_findings, with_measured
 from disorder_landscape.claims.sources import provenance
@@ -63,8 +64,7 @@ def study(tmp_path):
 
 def test_the_readme_says_what_the_claims_and_their_results_say():
     text = readme.README.read_text("utf-8")
-    section = readme.claims_section(stored_findings(ALL))
-    assert readme.with_claims(text, section) == text, "run `make claims-table`"
+    assert readme.written(text) == text, "run `make claims-table`"
 
 
 def test_every_verdict_that_is_not_reproduced_has_a_reason():
@@ -462,13 +462,36 @@ def test_help_has_a_worked_example(capsys):
 # ---- the README's marks and the print of numbers ------------------------------------------------
 
 
-def test_the_section_is_replaced_and_nothing_else():
-    before = f"a\n{readme.BEGIN}\nold\n{readme.END}\nz\n"
-    section = f"{readme.BEGIN}\nnew\n{readme.END}"
-    assert readme.with_claims(before, section) == f"a\n{section}\nz\n"
-    for damaged in ("a\n", before + before, f"{readme.END}{readme.BEGIN}"):
-        with pytest.raises(ArgumentError, match="the two marks"):
-            readme.with_claims(damaged, section)
+def test_a_section_is_replaced_and_nothing_else():
+    section = readme.Section("claims")
+    before = f"a\n{section.begin}\nold\n{section.end}\nz\n"
+    new = section.replaced(before, "new")
+    assert new == f"a\n{section.begin}\n\nnew\n{section.end}\nz\n"
+    assert section.replaced(new, "new") == new
+    for damaged in ("a\n", before + before, f"{section.end}{section.begin}"):
+        with pytest.raises(ArgumentError, match="the two marks of the claims"):
+            section.replaced(damaged, "new")
+
+
+def test_conventions_are_compared_with_the_mean_of_the_references(tmp_path):
+    common = {field.name: "x" if field.type == "str" else 0 for field in fields(Result)}
+    common |= {"delta_V": 0.3, "delta_alpha": 0.6}
+    values = [("reference", 0, 0.98), ("reference", 1, 0.96), ("raw", 0, 0.91)]
+    results = [
+        Result(
+            **{**common, "name": name, "seed": seed, "R2": R2, "delta_V": 0.3, "delta_alpha": 0.6}
+        )
+        for name, seed, R2 in values
+    ]
+    path = tmp_path / "conventions.csv"
+    write_table(path, results)
+    _, _, paper, reference, raw = conventions_table(path).splitlines()
+    assert paper.startswith("| the paper, 8,000 wires | 0.991 |  | 0.0350 | 0.37 | 0.110 | 1.16 |")
+    assert reference == "| reference | 0.9700 ± 0.0100 |  | 0.3000 | 1.73 | 0.600 | 3.46 |"
+    assert raw == "| raw | 0.9100 | −0.060 | 0.3000 | 1.00 | 0.600 | 2.00 |"
+    write_table(path, results[2:])
+    with pytest.raises(ArgumentError, match="have a run named reference"):
+        conventions_table(path)
 
 
 @pytest.mark.parametrize(

@@ -1,46 +1,70 @@
-"""The README's table of claims, written between two marks from the claims and their results."""
+"""The README's tables of claims and of conventions, written between marks from stored results."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 from disorder_landscape.arguments import require
 from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.claim import load_claims
-from disorder_landscape.claims.findings import Finding, stored_findings
+from disorder_landscape.claims.conventions import conventions_table
+from disorder_landscape.claims.findings import stored_findings
 from disorder_landscape.claims.table import COLUMNS, markdown, rows, tally
 from disorder_landscape.files import replacing
 
 README = REPOSITORY / "README.md"
-BEGIN = "<!-- claims: written by `make claims-table`, not by hand -->"
-END = "<!-- end of the claims -->"
 
 
-def claims_section(findings: tuple[Finding, ...]) -> str:
-    """Return what stands between the marks."""
-    table = markdown(COLUMNS, rows(findings))
-    return f"{BEGIN}\n\n{len(findings)} claims: {tally(findings)}.\n\n{table}\n{END}"
+@dataclass(frozen=True)
+class Section:
+    """A part of the README that stands between two marks of its own."""
+
+    name: str
+
+    @property
+    def begin(self) -> str:
+        """The first mark."""
+        return f"<!-- {self.name}: written by `make claims-table`, not by hand -->"
+
+    @property
+    def end(self) -> str:
+        """The last mark."""
+        return f"<!-- end of the {self.name} -->"
+
+    def replaced(self, text: str, content: str) -> str:
+        """Return a README's text with this content in place of the section's.
+
+        Raises
+        ------
+        ArgumentError
+            If the text lacks a mark, or has one twice.
+        """
+        must = f"have each of the two marks of the {self.name} once"
+        once = text.count(self.begin) == text.count(self.end) == 1
+        in_order = once and text.index(self.begin) < text.index(self.end)
+        require(in_order, "README", must, "it has not")
+        before, rest = text.split(self.begin)
+        after = rest.split(self.end)[1]
+        return f"{before}{self.begin}\n\n{content}\n{self.end}{after}"
 
 
-def with_claims(text: str, section: str) -> str:
-    """Return a README's text with the section in place of the one that it has.
+def claims_content() -> str:
+    """Return the tally and the table of all claims."""
+    findings = stored_findings(load_claims())
+    return f"{len(findings)} claims: {tally(findings)}.\n\n{markdown(COLUMNS, rows(findings))}"
 
-    Raises
-    ------
-    ArgumentError
-        If it lacks a mark, or has one twice.
-    """
-    must = "have each of the two marks of the claims once"
-    once = text.count(BEGIN) == text.count(END) == 1 and text.index(BEGIN) < text.index(END)
-    require(once, "README", must, "it has not")
-    before, rest = text.split(BEGIN)
-    return before + section + rest.split(END)[1]
+
+def written(text: str) -> str:
+    """Return a README's text with all sections as the stored results have them."""
+    text = Section("claims").replaced(text, claims_content())
+    return Section("conventions").replaced(text, conventions_table())
 
 
 def write_readme(path: Path = README) -> bool:
-    """Write the table of claims into the README; return whether it has changed."""
+    """Write the tables into the README; return whether it has changed."""
     text = path.read_text("utf-8")
-    new = with_claims(text, claims_section(stored_findings(load_claims())))
+    new = written(text)
     if new == text:
         return False
     with replacing(path) as temporary:
