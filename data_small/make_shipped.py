@@ -1,11 +1,13 @@
 """Make the shipped models and test sets from their runs, and SHA256SUMS of all data.
 
 Run from the repository's root, once the runs are evaluated (`make evaluate PRESET=full` and
-`make evaluate PRESET=full_ten_components`): python data_small/make_shipped.py
+`make evaluate PRESET=full_ten_components`): python data_small/make_shipped.py. Names of models in
+data_small/models make these only.
 """
 
 import hashlib
 import shutil
+import sys
 from pathlib import Path
 
 from disorder_landscape.chain import (
@@ -56,6 +58,6 @@ def write_sums() -> None:
 
 
 if __name__ == "__main__":
-    for model in MODELS:
+    for model in sys.argv[1:] or MODELS:
         ship(preset_run(PRESET, model=model), model)
     write_sums()
