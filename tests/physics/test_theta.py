@@ -9,6 +9,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
+from scipy.linalg import block_diag
 from scipy.optimize import brentq
 
 from disorder_landscape import ArgumentError, Nanowire, conductance, topological_visibility
@@ -208,6 +209,26 @@ def test_the_average_is_the_integral(seed, mu, B, theta, temperature):
     assert abs(G - brute.conductance).max() < 3e-6
     assert abs(G - brute.conductance).max() < error.max() < tilted_average.TOLERANCE
     assert energies_.max() < 100 < brute.energies.max()
+
+
+def test_a_level_that_no_lead_reaches_adds_nothing():
+    """Its pole is on the real axis, and rounding alone decides on which side."""
+    wire, B, mu, theta = random_wire(3), 0.5, np.array([0.2]), 0.7
+    average = tilted_average._Average(wire, B, BIAS, 0.004, theta)
+    z = average.real[:10] + 1e-3j
+    F = tilted_field.isolated_green_functions([wire], mu, np.array([B]), z, theta)[0, 0, 0]
+    A, u = isolated_wire(z, F)
+    pair = np.array([[0.0, 0.01], [-0.01, 0.0]])  # of levels at ±0.01 meV
+    poles, residues = average._poles(A, u)
+    more = block_diag(A, pair), np.hstack([u, np.zeros((len(u), 2))])
+    with_pair, their_residues = average._poles(*more)
+    decoupled = abs(abs(with_pair.real) - 0.01) + abs(with_pair.imag) < 1e-12
+    assert decoupled.sum() == 2
+    assert abs(their_residues[decoupled]).max() < 1e-12
+    assert with_pair.imag.max() < 0
+    order, same = np.argsort(poles), np.argsort(with_pair[~decoupled])
+    assert_allclose(with_pair[~decoupled][same], poles[order], rtol=0, atol=1e-10)
+    assert_allclose(their_residues[~decoupled].sum(0), residues.sum(0), rtol=0, atol=1e-9)
 
 
 def test_where_the_model_fails_the_integral_takes_over(monkeypatch):

@@ -153,7 +153,9 @@ class _Average:
         N = np.eye(len(A)) - u.T @ slope.real @ u
         K = A + u.T @ sigma.imag @ u
         eigenvalues, V = np.linalg.eig(np.linalg.solve(N, K))
-        z = 1j * eigenvalues
+        # A level that the leads do not reach has no width but what rounding gives, or none at all.
+        width = np.finfo(np.float64).eps * abs(eigenvalues).max()
+        z = -eigenvalues.imag + 1j * np.minimum(eigenvalues.real, -width)
         a = (BASIS @ (u @ V)).T  # (pole, 8)
         b = np.linalg.solve(V, np.linalg.solve(N, u.T)) @ BASIS.conj().T
         products = (a[:, :, None] * b[:, None, :]).reshape(-1, 64)
