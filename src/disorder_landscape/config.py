@@ -124,11 +124,11 @@ class TrainingConfig(_Section):
     realizations: Positive | None = None
     """How many of the training realizations are used, drawn by the seed; none takes all."""
     epochs: tuple[Positive, ...] = (15, 15, 10, 5)
-    """Epochs of each set; the learning rate is divided by 10 from set to set, unless "cosine"."""
+    """Epochs of each set; the learning rate is divided by 10 from set to set."""
     passes: Positive = 1
     """Passes over the training realizations that count as one epoch, where they are few."""
     schedule: Literal["sets", "cosine"] = "sets"
-    """"cosine" lets the learning rate fall along a cosine instead, step by step, in every set."""
+    """"cosine" lets the learning rate fall along a cosine instead, step by step, to zero."""
     learning_rate: LearningRate = 1e-4
     """Learning rate of the first set, or the largest of the cosine."""
     weight_decay: Annotated[float, Field(ge=0, le=10)] = 0.0

@@ -148,16 +148,6 @@ def test_the_cosine_rises_over_one_epoch_and_falls_to_zero():
     assert rates[-1] < 2e-6
 
 
-def test_the_cosine_starts_again_with_every_set():
-    two = tiny_config(epochs=(3, 5), learning_rate=1e-3, schedule="cosine").training
-    for epochs, before in ((3, 0), (5, 3)):
-        one = two.model_copy(update={"epochs": (epochs,)})
-        for epoch in range(1, epochs + 1):
-            for share in (0.0, 0.7):
-                rate = learning_rate(two, before + epoch, share)
-                assert rate == pytest.approx(learning_rate(one, epoch, share))
-
-
 def test_the_last_tenth_is_for_testing():
     assert split(8000, 0.1) == (slice(0, 7200), slice(7200, 8000))
 

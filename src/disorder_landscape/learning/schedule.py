@@ -19,14 +19,15 @@ def numbered_epochs(training: TrainingConfig) -> list[tuple[int, int]]:
 def learning_rate(training: TrainingConfig, epoch: int, share: float = 0.0) -> float:
     """Return the learning rate in an epoch (from 1), of which a share is done.
 
-    Each set divides it by 10 (S-II.2); or in each set it rises linearly over the first epoch and
-    falls along a cosine to zero (Loshchilov and Hutter, ICLR 2017; Goyal et al., arXiv:1706.02677).
+    Each set divides it by 10 (S-II.2); or it falls along a cosine to zero, after a linear rise over
+    the first epoch (Loshchilov and Hutter, ICLR 2017; Goyal et al., arXiv:1706.02677).
     """
-    set_ = dict(numbered_epochs(training))[epoch]
     if training.schedule == "sets":
+        set_ = dict(numbered_epochs(training))[epoch]
         return training.learning_rate / 10.0 ** (set_ - 1)
-    done = epoch - 1 + share - sum(training.epochs[: set_ - 1])
+    done = epoch - 1 + share
     if done < 1:
         return training.learning_rate * max(done, RISE_FROM)
-    falling = (done - 1) / max(training.epochs[set_ - 1] - 1, 1)
+    total = sum(training.epochs)
+    falling = (done - 1) / max(total - 1, 1)
     return training.learning_rate * 0.5 * (1 + math.cos(math.pi * falling))
