@@ -39,7 +39,7 @@ def conventions_table(path: Path = TABLE) -> str:
         float(claim_of(name, claims).paper or np.nan)
         for name in ("r2-five", "delta-v-five", "delta-alpha")
     )
-    rows = [("the paper, 8,000 wires", number(R2, 4), "", *_errors(R2, delta_V, delta_alpha))]
+    rows = [("the paper, 8,000 wires", number(R2), "", *_errors(R2, delta_V, delta_alpha))]
     for name in names:
         runs = [one for one in results if one.name == name]
         R2, delta_V, delta_alpha = (_mean(runs, key) for key in ("R2", "delta_V", "delta_alpha"))
