@@ -13,6 +13,7 @@ from disorder_landscape.physics.topology import topological_visibility
 from disorder_landscape.physics.transport import conductance
 
 if TYPE_CHECKING:
+    from disorder_landscape.inference.infer import infer
     from disorder_landscape.inference.verification import verify
     from disorder_landscape.learning.prediction import predict
 
@@ -21,6 +22,7 @@ __all__ = [
     "Nanowire",
     "conductance",
     "conductance_gradient",
+    "infer",
     "predict",
     "topological_visibility",
     "verify",
@@ -29,6 +31,10 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     """Import what needs scikit-learn or pydantic only when it is asked for."""
+    if name == "infer":
+        from disorder_landscape.inference.infer import infer
+
+        return infer
     if name == "predict":
         from disorder_landscape.learning.prediction import predict
 

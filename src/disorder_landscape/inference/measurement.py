@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
+from scipy.constants import e, h
 
-from disorder_landscape.arguments import ArgumentError, number_in, require
+from disorder_landscape.arguments import ArgumentError, grid_in, number_in, require
 from disorder_landscape.physics.hamiltonian import FULL_TURN
 from disorder_landscape.physics.labels import CONDUCTANCES
 from disorder_landscape.physics.parameters import FloatArray
 
+AXES = ("mu", "B", "bias")
+QUANTUM = e**2 / h
+"""e²/h in S."""
+SIEMENS = ("S", "siemens", "Siemens", "A/V", "uS", "µS", "μS", "nS")
+IN_QUANTA = f"be in e²/h, which is {QUANTUM:.4g} S, by which conductances in S are divided"
 SETTINGS = ("theta", "barrier", "temperature")
 """Attributes that a measurement must have: in radians, in meV (left, right), in K."""
 
@@ -33,7 +40,9 @@ class Measurement:
     """In K."""
 
 
-def measurement_of(dataset: xr.Dataset) -> Measurement:
+def measurement_of(
+    dataset: xr.Dataset, usual: Mapping[str, object] | None = None, complete: bool = True
+) -> Measurement:
     """Return a measurement of one wire, checked.
 
     Parameters
@@ -41,32 +50,61 @@ def measurement_of(dataset: xr.Dataset) -> Measurement:
     dataset : Dataset
         G_LL … G_RL in e²/h, dims (mu, B, bias) in any order, and the attributes SETTINGS, as
         `conductance` returns them.
+    usual : mapping, optional
+        Settings where the attributes are missing.
+    complete : bool
+        Whether each conductance must be there and finite; otherwise one number is enough, and what
+        is missing is NaN.
 
     Raises
     ------
     ArgumentError
-        If it lacks a variable, a dim or an attribute, has several wires, or holds NaN.
+        If it lacks a variable, a dim or an attribute, has several wires, holds NaN or infinity, or
+        is in siemens.
     """
     there = isinstance(dataset, xr.Dataset)
     require(there, "measurement", "be a Dataset", f"it is {type(dataset).__name__!r}")
     must = "hold the conductances of one wire over mu, B and bias"
-    missing = [name for name in (*CONDUCTANCES, "mu", "B", "bias") if name not in dataset.variables]
+    given = [name for name in CONDUCTANCES if name in dataset.variables]
+    missing = [name for name in (*CONDUCTANCES, *AXES) if name not in dataset.variables]
+    if not complete and given:
+        missing = [name for name in missing if name in AXES]
     require(not missing, "measurement", must, f"it lacks {', '.join(missing)}")
-    dims = sorted({str(dim) for name in CONDUCTANCES for dim in dataset[name].dims})
+    dims = sorted({str(dim) for name in given for dim in dataset[name].dims})
     require(dims == ["B", "bias", "mu"], "measurement", must, f"its dims are {', '.join(dims)}")
-    missing = [name for name in SETTINGS if name not in dataset.attrs]
+    settings = {**(usual or {}), **dataset.attrs}
+    missing = [name for name in SETTINGS if name not in settings]
     states = f"state {', '.join(SETTINGS)} as attributes"
     require(not missing, "measurement", states, f"it lacks {', '.join(missing)}")
-    G = np.stack([dataset[name].transpose("mu", "B", "bias") for name in CONDUCTANCES], axis=-1)
-    finite = np.issubdtype(G.dtype, np.number) and bool(np.isfinite(G).all())
-    require(finite, "measurement", "hold finite numbers", "it holds something else")
     return Measurement(
-        G=np.asarray(G, dtype=np.float64),
-        **{name: dataset[name].to_numpy() for name in ("mu", "B", "bias")},
-        theta=number_in("theta", dataset.attrs["theta"], -FULL_TURN, FULL_TURN, "radians"),
-        barrier=_two_barriers(dataset.attrs["barrier"]),
-        temperature=number_in("temperature", dataset.attrs["temperature"], 0.0, 10.0, "K"),
+        G=_checked_conductances(dataset, given, complete),
+        mu=grid_in("mu", dataset["mu"].to_numpy(), -1e3, 1e3, "meV"),
+        B=grid_in("B", dataset["B"].to_numpy(), -100.0, 100.0, "T"),
+        bias=grid_in("bias", dataset["bias"].to_numpy(), -1e3, 1e3, "meV"),
+        theta=number_in("theta", settings["theta"], -FULL_TURN, FULL_TURN, "radians"),
+        barrier=_two_barriers(settings["barrier"]),
+        temperature=number_in("temperature", settings["temperature"], 0.0, 10.0, "K"),
     )
+
+
+def _checked_conductances(dataset: xr.Dataset, given: list[str], complete: bool) -> FloatArray:
+    """Return the conductances (mu, B, bias, channel) in e²/h, NaN for what is not given."""
+    shape = tuple(dataset.sizes[axis] for axis in AXES)
+    G = np.full((*shape, len(CONDUCTANCES)), np.nan)
+    for name in given:
+        values = dataset[name].transpose(*AXES).to_numpy()
+        numbers = np.issubdtype(values.dtype, np.number)
+        finite = numbers and bool((np.isfinite(values) | (np.isnan(values) & (not complete))).all())
+        require(finite, "measurement", "hold finite numbers", "it holds something else")
+        G[..., CONDUCTANCES.index(name)] = values
+        unit = str(dataset[name].attrs.get("units", ""))
+        require(unit not in SIEMENS, "measurement", IN_QUANTA, f"the units of {name} are {unit}")
+    measured = abs(G[np.isfinite(G)])
+    require(measured.size > 0, "measurement", "hold finite numbers", "it holds none")
+    largest = measured.max()
+    but = f"none is larger than {largest:.3g}, as if they were in siemens"
+    require(not 0 < largest < 2 * QUANTUM, "measurement", IN_QUANTA, but)
+    return G
 
 
 def _two_barriers(stated: object) -> tuple[float, float]:

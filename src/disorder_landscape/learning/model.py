@@ -8,7 +8,7 @@ finished training), curves.csv with curves.pdf and curves.png.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 from zipfile import BadZipFile
@@ -44,6 +44,8 @@ class TrainedModel:
     inputs: InputScaler | None
     """None where the network sees the conductance itself."""
     config: Config
+    r2_by_label: Mapping[str, float] = field(default_factory=dict)
+    """On the test realizations; empty before there are scores."""
 
     def predict_labels(self, X: ConductanceArray) -> FloatArray:
         """Return the labels in meV and meV nm that the network predicts.
@@ -120,7 +122,8 @@ def load_model(folder: str | Path) -> TrainedModel:
         inputs = None if scaler["inputs"] is None else InputScaler.from_dict(scaler["inputs"])
     except (KeyError, TypeError, ValueError) as error:
         raise ArgumentError("model", _MODEL, f"'{folder / SCALER}' lacks {error}") from None
-    return TrainedModel(load_network(folder / NETWORK), labels, inputs, config)
+    scores = read_model_file(folder / METRICS).get("r2_by_label", {})
+    return TrainedModel(load_network(folder / NETWORK), labels, inputs, config, scores)
 
 
 def read_model_file(path: Path) -> dict[str, Any]:

@@ -123,6 +123,32 @@ def disorder_realization(
     return labels, potential_from_components(labels, sites, kappa * c[0] / np.sqrt(sites))
 
 
+def component_covariance(
+    components: int,
+    sites: int,
+    correlation_length: float = CORRELATION_LENGTH,
+    amplitude: str = "sum",
+    noise_std: float = NOISE_STD,
+    mean_std: float = MEAN_STD,
+) -> FloatArray:
+    """Return the covariance of c₁ … c_n and of the mean of V in this disorder model, exactly.
+
+    The components are linear in the white noise, each of whose values is independent.
+
+    Returns
+    -------
+    array, shape (n + 1, n + 1)
+        In meV²; the mean of V, as it is left in, comes last.
+    """
+    reach = sites + 2 * KERNEL_REACH
+    taps = kernel(correlation_length, amplitude)
+    smoothing = np.array([np.convolve(row, taps, mode="valid") for row in np.eye(reach)])
+    of_noise = noise_std * cosine_components(smoothing)[:, : components + 1]
+    kappa = mean_reduction(sites, correlation_length, amplitude, noise_std, mean_std)
+    of_noise = np.column_stack([of_noise[:, 1:], kappa * of_noise[:, 0] / np.sqrt(sites)])
+    return np.asarray(of_noise.T @ of_noise)
+
+
 def fidelity_by_components(
     correlation_length: float, sites: int, samples: int = 1000, seed: int = 0
 ) -> FloatArray:

@@ -1,0 +1,71 @@
+"""Inversions of 200 fresh wires for each model and noise: accuracy, calibration, verdicts.
+
+Writes inversions.csv, a row per inversion. What is there is not repeated: an interrupted run goes
+on. Example: python claims/inversion.py --noise 0 0.01 --wires 50
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from multiprocessing import get_context
+from pathlib import Path
+
+import pandas as pd
+from tqdm import tqdm
+
+from disorder_landscape.chain import MODELS
+from disorder_landscape.physics.compilation import compile_kernels
+from disorder_landscape.studies.inversions import (
+    Task,
+    inversion_row,
+    missing,
+    read_rows,
+    write_rows,
+)
+from disorder_landscape.studies.noise import NOISE
+
+
+def one_thread() -> None:
+    """Keep a worker to one thread."""
+    import numba
+
+    numba.set_num_threads(1)
+    os.environ.update(TF_NUM_INTRAOP_THREADS="1", TF_NUM_INTEROP_THREADS="1")
+
+
+def main() -> None:
+    """Carry out what is missing."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    folder = Path(__file__).resolve().parent
+    parser.add_argument("-o", "--output", type=Path, default=folder / "inversions.csv")
+    parser.add_argument("--models", nargs="+", choices=MODELS, default=list(MODELS))
+    parser.add_argument("--noise", nargs="+", type=float, default=list(NOISE))
+    parser.add_argument("--wires", type=int, default=200)
+    parser.add_argument("--workers", type=int, default=2)
+    arguments = parser.parse_args()
+
+    tasks = [
+        Task(model, noise, index)
+        for index in range(arguments.wires)
+        for noise in arguments.noise
+        for model in arguments.models
+    ]
+    table = read_rows(arguments.output)
+    left = missing(tasks, table)
+    compile_kernels()
+    with (
+        ProcessPoolExecutor(arguments.workers, get_context("spawn"), one_thread) as pool,
+        tqdm(total=len(tasks), initial=len(tasks) - len(left), unit=" wires") as bar,
+    ):
+        for future in as_completed([pool.submit(inversion_row, task) for task in left]):
+            table = pd.concat([table, pd.DataFrame([future.result()])], ignore_index=True)
+            write_rows(table, arguments.output)
+            bar.update()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,55 @@
+"""Where an inversion starts: the network's guess with its error at this noise, or the prior."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from disorder_landscape.inference.observation import Observation
+from disorder_landscape.inference.unknowns import Gaussian, Unknowns
+from disorder_landscape.learning.model import TrainedModel
+from disorder_landscape.physics.parameters import FloatArray
+
+WIRES_PER_UNKNOWN = 4
+"""Wires on which the network's error is measured."""
+LOCAL = 2.0
+"""They are drawn about the guess, with this many times the network's error without noise."""
+WIDENING = 1.2
+"""Of the measured deviations, which are those of few wires."""
+
+
+def network_guess(
+    model: TrainedModel, observation: Observation, rng: np.random.Generator
+) -> Gaussian:
+    """Return what the network says of a measurement, less its bias, and with the error it makes.
+
+    Both are measured: wires like the guess are simulated, given errors of the stated noise, and
+    shown to the network. So the error is that of this network for such wires at this noise.
+    """
+    unknowns = observation.unknowns
+    guess = _labels(model, unknowns, observation.measurement.G[None])[0]
+    error = _error_without_noise(model, unknowns)
+    X = Gaussian(guess, LOCAL**2 * np.diag(error**2)).draw(
+        rng, WIRES_PER_UNKNOWN * len(unknowns.names)
+    )
+    G = observation.conductances(X)
+    off = _labels(model, unknowns, G + observation.noise * rng.normal(size=G.shape)) - X
+    predicted = np.array([name in model.labels.names for name in unknowns.names])
+    off[:, ~predicted] = 0.0
+    least = np.where(predicted, error / 10, error)
+    covariance = WIDENING**2 * np.cov(off.T) + np.diag(least**2)
+    return Gaussian(guess - off.mean(axis=0), covariance)
+
+
+def _labels(model: TrainedModel, unknowns: Unknowns, G: FloatArray) -> FloatArray:
+    """Return the network's labels as unknowns, (member, unknown), for G (member, …, channel)."""
+    Y = model.predict_labels(G.astype(np.float32))
+    return unknowns.vector(dict(zip(model.labels.names, Y.T, strict=True)))
+
+
+def _error_without_noise(model: TrainedModel, unknowns: Unknowns) -> FloatArray:
+    """Return the network's errors on its test realizations, the prior's without them (unknown,)."""
+    error = dict(zip(unknowns.names, np.sqrt(np.diag(unknowns.prior.covariance)), strict=True))
+    for name, std in zip(model.labels.names, model.labels.std, strict=True):
+        if name in model.r2_by_label:
+            error[name] = std * np.sqrt(1 - model.r2_by_label[name])
+    return np.array([error[name] for name in unknowns.names])

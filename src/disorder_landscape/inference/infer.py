@@ -1,0 +1,181 @@
+"""`infer`: the disorder in a measured wire, how sure that is, and where the wire is topological."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from disorder_landscape.arguments import number_in, require
+from disorder_landscape.inference.checkpoint import Checkpoint
+from disorder_landscape.inference.inversion import (
+    Attempt,
+    InversionSettings,
+    Told,
+    best,
+    invert,
+    verdict,
+)
+from disorder_landscape.inference.measurement import measurement_of
+from disorder_landscape.inference.observation import Observation, noise_of_channels
+from disorder_landscape.inference.unknowns import Unknowns
+from disorder_landscape.learning.model import (
+    TrainedModel,
+    check_grid,
+    load_model,
+    load_model_config,
+)
+from disorder_landscape.learning.scaling import NOISE_FLOOR
+from disorder_landscape.physics.labels import CONDUCTANCES, labelled
+from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.physics.topology import topological_visibility
+
+MEMBERS = 64
+MAP_POINTS = 61, 81
+"""Of the maps of T_IV and P(topological), along μ and B."""
+
+
+def infer(
+    G: xr.Dataset,
+    model: str | Path | TrainedModel,
+    noise: float | Mapping[str, float] = NOISE_FLOOR,
+    network: bool = True,
+    members: int = MEMBERS,
+    seed: int = 0,
+    settings: InversionSettings | None = None,
+    checkpoint: Path | None = None,
+    told: Told = lambda attempt, number, step: None,
+) -> xr.Dataset:
+    """Find the disorder that explains a measurement, with error bars and a verdict.
+
+    The network's guess and its error at this noise are where an iterated ensemble smoother starts,
+    which refines them with the exact simulation (`smoother`). An answer whose misfit the noise does
+    not explain is not accepted: further attempts start elsewhere.
+
+    Parameters
+    ----------
+    G : Dataset
+        Conductances of one wire in e²/h, dims (mu, B, bias) in any order. The attributes
+        temperature (K), barrier (left and right, meV) and theta (radians) are the model's where
+        they are missing. Conductances may be missing, or NaN here and there: what is there is
+        explained, and the start is then the disorder model's prior, because the network needs all.
+    model : path or TrainedModel
+        Folder of a trained model, which also says what disorder to expect.
+    noise : float or mapping
+        Standard deviation of the measurement's errors in e²/h, or of each channel's.
+    network : bool
+        False starts from the disorder model's prior: for other grids than the network's.
+    members : int
+        How many members of the posterior are returned, an even number.
+    seed : int
+    settings : InversionSettings, optional
+    checkpoint : Path, optional
+        File through which an interrupted run goes on; deleted in the end.
+    told : callable, optional
+        Told the number of the attempt, the number of the step and the step.
+
+    Returns
+    -------
+    Dataset
+        Of the members: potential (member, site) and components (member, component) in meV, alpha
+        (member) in meV nm. potential_mean and potential_deviation (site). misfit (channel) in
+        e²/h. Conductances of the mean, G_LL … G_RL (mu, B, bias). On a finer grid: T_IV (lead,
+        map_mu, map_B) of the mean and P_topological (map_mu, map_B), the share of the members with
+        det r < 0 at the left end. Attributes: verdict ("converged", "not converged" or "not
+        described by the model"), excess, attempts, steps, start, noise.
+
+    Raises
+    ------
+    ArgumentError
+        If the measurement is on another grid than the network's, not one wire's or in siemens, if
+        the noise is negative, or another argument is out of range.
+    """
+    config = (
+        model.config if isinstance(model, TrainedModel) else load_model_config(Path(model))
+    ).dataset
+    usual = {
+        "theta": 0.0,
+        "barrier": (config.wire.barrier, config.wire.barrier),
+        "temperature": config.temperature,
+    }
+    measurement = measurement_of(G, usual, complete=False)
+    errors = noise_of_channels(noise)
+    members = int(number_in("members", members, 2, 10_000))
+    require(members % 2 == 0, "members", "be an even number", f"it is {members}")
+    seed = int(number_in("seed", seed, 0, 2**31))
+    whole = bool(np.isfinite(measurement.G).all())
+    if network and whole:
+        check_grid(G, config, "measurement")
+        model = model if isinstance(model, TrainedModel) else load_model(model)
+    observation = Observation(measurement, Unknowns(config), errors)
+    start = "the network's guess" if network and whole else "the prior"
+    if network and not whole:
+        start += ", because the network needs all conductances and some are missing"
+    fingerprint = repr((config.hash, errors.tolist(), seed, settings, start, measurement))
+    notes = Checkpoint(checkpoint, fingerprint.encode() + measurement.G.tobytes())
+    guesses = model if isinstance(model, TrainedModel) and network and whole else None
+    attempts = invert(observation, guesses, seed, settings, told, notes)
+    result = _result(observation, best(attempts), members, seed)
+    result.attrs = {
+        "verdict": verdict(observation, attempts),
+        "excess": best(attempts).excess,
+        "attempts": len(attempts),
+        "steps": sum(attempt.steps for attempt in attempts),
+        "start": start,
+        "noise": errors,
+        "temperature": measurement.temperature,
+        "barrier": measurement.barrier,
+        "theta": measurement.theta,
+        "config_hash": config.hash,
+    }
+    notes.remove()
+    return result
+
+
+def _result(observation: Observation, chosen: Attempt, members: int, seed: int) -> xr.Dataset:
+    m, unknowns = observation.measurement, observation.unknowns
+    mean = chosen.answer.mean
+    X = chosen.answer.draw(np.random.default_rng([seed, 2**31 + 1]), members)
+    V = unknowns.potential(X)
+    maps = _maps(m.mu, m.B)
+    wires = unknowns.wires(np.concatenate([mean[None], X]), m.barrier)
+    T_IV = topological_visibility(wires, maps[0], maps[1], theta=m.theta)
+    G = observation.conductances(mean[None])[0]
+    topological = (T_IV.isel(realization=slice(1, None), lead=0) < 0).mean("realization")
+    grid = ("map_mu", "map_B")
+    data = {
+        "components": (("member", "component"), unknowns.components(X)),
+        "alpha": ("member", unknowns.alpha(X)),
+        "potential": (("member", "site"), V),
+        "potential_mean": ("site", unknowns.potential(mean), {"units": "meV"}),
+        "potential_deviation": ("site", _deviation(unknowns, chosen), {"units": "meV"}),
+        "misfit": ("channel", np.nan_to_num(observation.misfit(chosen.data)), {"units": "e^2/h"}),
+        **{name: (("mu", "B", "bias"), G[..., c]) for c, name in enumerate(CONDUCTANCES)},
+        "T_IV": (("lead", *grid), T_IV.isel(realization=0).to_numpy()),
+        "P_topological": (grid, topological.to_numpy(), {"units": "1"}),
+    }
+    coords = {
+        "component": np.arange(1, unknowns.config.components + 1),
+        "site": np.arange(unknowns.config.sites),
+        "channel": list(CONDUCTANCES),
+        "lead": ["L", "R"],
+        **{axis: getattr(m, axis) for axis in ("mu", "B", "bias")},
+        **dict(zip(grid, maps, strict=True)),
+    }
+    return labelled(xr.Dataset(data, coords=coords))
+
+
+def _deviation(unknowns: Unknowns, chosen: Attempt) -> FloatArray:
+    """Return the standard deviation of V on each site."""
+    each = unknowns.potential(np.eye(len(unknowns.names)))  # V of each unknown alone
+    return np.asarray(np.sqrt(np.einsum("is,ij,js->s", each, chosen.answer.covariance, each)))
+
+
+def _maps(mu: FloatArray, B: FloatArray) -> list[FloatArray]:
+    """Return fine grids of μ and B over the range of the measurement."""
+    return [
+        np.linspace(axis[0], axis[-1], points) if axis.size > 1 else axis
+        for axis, points in zip((mu, B), MAP_POINTS, strict=True)
+    ]

@@ -1,0 +1,193 @@
+"""From one measurement to the disorder in the wire: guess, smoother, polish, and a verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import partial
+
+import numpy as np
+
+from disorder_landscape.inference.checkpoint import Checkpoint
+from disorder_landscape.inference.first_guess import network_guess
+from disorder_landscape.inference.observation import Observation
+from disorder_landscape.inference.polish import polish
+from disorder_landscape.inference.smoother import Recall, SmootherSettings, Step, smooth
+from disorder_landscape.inference.unknowns import Gaussian
+from disorder_landscape.learning.model import TrainedModel
+from disorder_landscape.physics.parameters import FloatArray
+
+CONVERGED = "converged"
+NOT_CONVERGED = "not converged"
+NOT_DESCRIBED = "not described by the model"
+"""The verdicts."""
+
+TOLERATED = 3.5
+"""χ² of all data, or of one channel's, may lie this many of its own deviations above its mean."""
+EXPECTED = 2.0
+"""Below this an answer is right at once, if a wrong one would be further above; otherwise a second
+attempt must agree."""
+WRONG_MISFIT = 0.005
+"""What wrong answers differ by from the right one in e²/h at least, root mean square. Noise that
+hides as much calls for a second attempt, too."""
+SAME_ANSWER = 3.0
+"""Two optima are the same where their V are closer than this many of their own deviations."""
+
+
+@dataclass(frozen=True)
+class InversionSettings:
+    """How many attempts there are, and how each goes about it."""
+
+    smoother: SmootherSettings = field(default_factory=SmootherSettings)
+    attempts: int = 4
+    """The first starts from the network's guess, the next from the disorder model's prior, further
+    ones from the guess with a wider error."""
+    wider: float = 2.0
+    """Each further attempt from the guess widens the error by this factor."""
+    more_members: float = 1.5
+    """Each further attempt has so many times the members, and shrinks their spread more slowly."""
+
+
+@dataclass(frozen=True, eq=False)
+class Attempt:
+    """Where one smoother and its polish have ended."""
+
+    answer: Gaussian
+    data: FloatArray
+    """What its mean shows, shape (datum,)."""
+    objective: float
+    """−2 log of its posterior density, up to a constant."""
+    excess: float
+    """How many of its deviations χ² is above its mean: of all data, or of a channel, if more."""
+    steps: int
+
+    @property
+    def fits(self) -> bool:
+        """Whether the noise explains what is left of the misfit."""
+        return self.excess <= TOLERATED
+
+
+Told = Callable[[int, int, Step], None]
+"""Told the number of the attempt, the number of the step and the step."""
+
+
+def invert(
+    observation: Observation,
+    model: TrainedModel | None,
+    seed: int = 0,
+    settings: InversionSettings | None = None,
+    told: Told = lambda attempt, number, step: None,
+    checkpoint: Checkpoint | None = None,
+) -> list[Attempt]:
+    """Return the attempts at explaining the data, the last or the best of which is the answer.
+
+    Parameters
+    ----------
+    observation : Observation
+    model : TrainedModel, optional
+        The network that guesses; without it the disorder model's prior is where attempts start.
+    seed : int
+    settings : InversionSettings, optional
+    told : callable
+        Progress.
+    checkpoint : Checkpoint, optional
+        What an interrupted run has found.
+    """
+    recall = (checkpoint or Checkpoint()).recall
+    settings = settings if settings is not None else InversionSettings()
+    attempts: list[Attempt] = []
+    prior = guess = observation.unknowns.prior
+    if model is not None:
+        rng = np.random.default_rng([seed, 2**31])
+        make = partial(network_guess, model, observation, rng)
+        guess = _recalled(recall, "guess", make)
+    for number in range(settings.attempts):
+        wider = settings.wider ** (number // 2)
+        start = prior if number % 2 else Gaussian(guess.mean, wider**2 * guess.covariance)
+        smoother = _with_more_members(settings, number)
+        step, steps = None, 0
+        for step in smooth(observation, start, [seed, number], smoother, recall):
+            told(number, steps, step)
+            steps += 1
+        assert step is not None
+        answer = step.distribution
+        if not step.is_last(smoother):
+            make = partial(polish, observation, answer)
+            answer = _recalled(recall, f"polish.{number}", make)
+        attempts.append(_attempt(observation, answer, steps))
+        if verdict(observation, attempts) == CONVERGED:
+            break
+    return attempts
+
+
+def _recalled(recall: Recall, name: str, make: Callable[[], Gaussian]) -> Gaussian:
+    return Gaussian.from_dict(recall(name, lambda: make().to_dict()))
+
+
+def _attempt(observation: Observation, answer: Gaussian, steps: int) -> Attempt:
+    data = observation.simulate(answer.mean[None])[0]
+    off = answer.mean - observation.unknowns.prior.mean
+    of_prior = off @ np.linalg.solve(observation.unknowns.prior.covariance, off)
+    squares = (data - observation.data) ** 2 / observation.variance
+    objective = float(squares.sum() + of_prior)
+    return Attempt(answer, data, objective, chi_square_excess(observation, squares), steps)
+
+
+def _with_more_members(settings: InversionSettings, number: int) -> SmootherSettings:
+    more = settings.more_members**number
+    return replace(
+        settings.smoother,
+        members_per_unknown=settings.smoother.members_per_unknown * more,
+        least_shrinking=settings.smoother.least_shrinking ** (1 / more),
+    )
+
+
+def chi_square_excess(observation: Observation, squares: FloatArray) -> float:
+    """Return how far χ² is above its mean in its deviations, the most over channels and over all.
+
+    Parameters
+    ----------
+    observation : Observation
+    squares : array, shape (datum,)
+        Squared misfits in units of the errors' variance.
+    """
+    sets = [np.ones(squares.size, dtype=bool)]
+    sets += [observation.channel == c for c in np.unique(observation.channel)]
+    return max(float((squares[s].sum() - s.sum()) / np.sqrt(2 * s.sum())) for s in sets)
+
+
+def best(attempts: list[Attempt]) -> Attempt:
+    """Return the attempt with the most probable answer."""
+    return min(attempts, key=lambda attempt: attempt.objective)
+
+
+def verdict(observation: Observation, attempts: list[Attempt]) -> str:
+    """Say what became of it.
+
+    An answer that explains the data has converged, if a wrong one could not, or another attempt
+    agrees. Where none explains the data but attempts agree on one, it is the model that cannot;
+    where they do not agree either, a better answer may have been missed.
+    """
+    chosen = best(attempts)
+    agreed = any(
+        same_answer(observation, chosen, other) for other in attempts if other is not chosen
+    )
+    if chosen.fits:
+        at_once = chosen.excess < EXPECTED and tells_wrong_answers(observation)
+        return CONVERGED if agreed or at_once else NOT_CONVERGED
+    return NOT_DESCRIBED if agreed else NOT_CONVERGED
+
+
+def tells_wrong_answers(observation: Observation) -> bool:
+    """Return whether the noise is too small for a wrong answer to fit."""
+    hidden = TOLERATED * np.sqrt(2 / observation.data.size) * observation.variance.mean()
+    return bool(hidden < WRONG_MISFIT**2)
+
+
+def same_answer(observation: Observation, one: Attempt, other: Attempt) -> bool:
+    """Return whether two attempts have ended in the same optimum."""
+    unknowns = observation.unknowns
+    squares = (one.data - observation.data) ** 2 / observation.variance
+    scatter = np.sqrt(max(1.0, float(squares.mean())))
+    near = SAME_ANSWER * scatter * unknowns.site_deviation(one.answer.covariance)
+    return bool(unknowns.site_distance(other.answer.mean, one.answer.mean) < near)

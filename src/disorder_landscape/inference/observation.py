@@ -1,0 +1,110 @@
+"""The data that an inversion explains: what was measured, with which errors, and its simulation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from disorder_landscape.arguments import number_in, require
+from disorder_landscape.inference.measurement import Measurement
+from disorder_landscape.inference.unknowns import Unknowns
+from disorder_landscape.physics.labels import CONDUCTANCES
+from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.physics.transport import conductance
+
+SOLVER_ERROR = 1e-4
+"""In e²/h: what the simulation is exact to (`finite_temperature.TOLERANCE`), below which no noise
+can be told from none."""
+
+FEW = 7
+"""Lines of a grid of which none is left out."""
+
+
+@dataclass(frozen=True, eq=False)
+class Observation:
+    """What was measured, as one vector of data, and how to simulate it.
+
+    Parameters
+    ----------
+    measurement : Measurement
+        NaN where nothing was measured.
+    unknowns : Unknowns
+    noise : array, shape (channel,)
+        Standard deviations of the errors in e²/h.
+    """
+
+    measurement: Measurement
+    unknowns: Unknowns
+    noise: FloatArray
+
+    @property
+    def there(self) -> NDArray[np.bool_]:
+        """Which conductances were measured, shape (mu, B, bias, channel)."""
+        return np.isfinite(self.measurement.G)
+
+    @property
+    def data(self) -> FloatArray:
+        """In e²/h, shape (datum,)."""
+        return np.asarray(self.measurement.G[self.there])
+
+    @property
+    def channel(self) -> NDArray[np.int64]:
+        """Which channel each datum is of, shape (datum,)."""
+        channel = np.broadcast_to(np.arange(len(CONDUCTANCES)), self.measurement.G.shape)
+        return np.asarray(channel[self.there])
+
+    @property
+    def variance(self) -> FloatArray:
+        """Of the data's errors in (e²/h)², shape (datum,), the solver's included."""
+        return np.asarray((self.noise**2 + SOLVER_ERROR**2)[self.channel])
+
+    def simulate(self, X: FloatArray) -> FloatArray:
+        """Return the data of members (member, unknown), shape (member, datum)."""
+        return np.asarray(self.conductances(X)[:, self.there])
+
+    def on_some_lines(self, share: float, rng: np.random.Generator) -> Observation:
+        """Return an observation of random lines of μ and B, which hold this share of the data.
+
+        Grids of up to FEW lines stay whole, and those with lines that lack data.
+        """
+        m = self.measurement
+        mu, B = (
+            np.sort(rng.choice(n, max(min(FEW, n), round(n * np.sqrt(share))), replace=False))
+            for n in (m.mu.size, m.B.size)
+        )
+        some = replace(m, G=m.G[np.ix_(mu, B)], mu=m.mu[mu], B=m.B[B])
+        part = replace(self, measurement=some)
+        return part if part.data.size >= share * self.data.size / 2 else self
+
+    def conductances(self, X: FloatArray) -> FloatArray:
+        """Return conductances of members in e²/h, shape (member, mu, B, bias, channel)."""
+        m = self.measurement
+        wires = self.unknowns.wires(X, m.barrier)
+        G = conductance(wires, m.mu, m.B, m.bias, m.temperature, theta=m.theta)
+        return np.stack([G[name].to_numpy() for name in CONDUCTANCES], axis=-1)
+
+    def misfit(self, y: FloatArray) -> FloatArray:
+        """Return root-mean-square misfits in e²/h, shape (channel,); NaN without data."""
+        squares = (y - self.data) ** 2
+        count = np.bincount(self.channel, minlength=len(CONDUCTANCES))
+        total = np.bincount(self.channel, squares, minlength=len(CONDUCTANCES))
+        mean = np.divide(total, count, out=np.full(count.size, np.nan), where=count > 0)
+        return np.asarray(np.sqrt(mean))
+
+
+def noise_of_channels(noise: float | Mapping[str, float]) -> FloatArray:
+    """Return the standard deviation of each channel's errors in e²/h, shape (channel,).
+
+    Raises
+    ------
+    ArgumentError
+        If it is negative or no number, or not given for each channel.
+    """
+    if not isinstance(noise, Mapping):
+        return np.full(len(CONDUCTANCES), number_in("noise", noise, 0.0, 1.0, "e²/h"))
+    must = f"be one number, or one for each of {', '.join(CONDUCTANCES)}"
+    require(set(noise) == set(CONDUCTANCES), "noise", must, f"it is for {', '.join(noise)}")
+    return np.array([number_in("noise", noise[name], 0.0, 1.0, "e²/h") for name in CONDUCTANCES])

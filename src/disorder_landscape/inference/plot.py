@@ -1,0 +1,128 @@
+"""A picture of what `infer` has found."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from disorder_landscape.files import replacing
+from disorder_landscape.inference.measurement import Measurement
+from disorder_landscape.physics.labels import CONDUCTANCES
+from disorder_landscape.physics.parameters import FloatArray
+
+FIGURE_SIZE = 7.06, 5.6
+"""In inches; the width is that of a page of the paper's journal."""
+INTERVALS = (5, 95), (25, 75)
+"""Percentiles of the members between which V is shaded."""
+
+
+def plot_inference(result: xr.Dataset, measurement: Measurement, path: Path) -> None:
+    """Draw V and its intervals, the components, G measured and explained, and P(topological).
+
+    Parameters
+    ----------
+    result : Dataset
+        What `infer` returned.
+    measurement : Measurement
+        What it was given.
+    path : Path
+        Picture, of a format that matplotlib knows.
+
+    Raises
+    ------
+    ArgumentError
+        If the file cannot be written.
+    """
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    from matplotlib import pyplot as plt
+
+    with plt.rc_context({"font.size": 8, "axes.titlesize": 8}):
+        figure = plt.figure(figsize=FIGURE_SIZE, layout="constrained")
+        panels = figure.subplot_mosaic(
+            [["V"] * 4, ["c", "c", "misfit", "misfit"], ["measured", "explained", "T", "P"]]
+        )
+        _potential(panels["V"], result)
+        _components(panels["c"], result)
+        _misfit(panels["misfit"], result)
+        _conductances(figure, panels["measured"], panels["explained"], result, measurement)
+        _maps(figure, panels["T"], panels["P"], result)
+        figure.suptitle(f"{result.attrs['verdict']}; from {result.attrs['start']}", fontsize=8)
+        with replacing(path) as temporary:
+            figure.savefig(temporary, dpi=200)
+        plt.close(figure)
+
+
+def _potential(panel: Any, result: xr.Dataset) -> None:
+    V, site = result["potential"].to_numpy(), result["site"].to_numpy()
+    for (low, high), alpha in zip(INTERVALS, (0.25, 0.5), strict=True):
+        between = np.percentile(V, [low, high], axis=0)
+        label = f"{high - low} % of the members"
+        panel.fill_between(site, *between, color="C0", alpha=alpha, lw=0, label=label)
+    panel.plot(site, result["potential_mean"], "k", lw=0.8, label="mean")
+    largest = 1e3 * float(np.sqrt((result["potential_deviation"] ** 2).mean()))
+    panel.set(xlabel="site", ylabel=r"$V_\mathrm{dis}$ [meV]", xlim=(site[0], site[-1]))
+    panel.set_title(f"deviation of $V$, root mean square: {largest:.2g} µeV")
+    panel.legend(ncols=3, frameon=False)
+
+
+def _components(panel: Any, result: xr.Dataset) -> None:
+    c = result["components"]
+    panel.errorbar(
+        result["component"], c.mean("member"), c.std("member"), fmt="k.", capsize=2, lw=0.8
+    )
+    panel.axhline(0.0, color="0.7", lw=0.5)
+    panel.set(xlabel="component $n$", ylabel="$c_n$ [meV]")
+    alpha = result["alpha"]
+    text = rf"$\alpha$ = {float(alpha.mean()):.4f} ± {float(alpha.std()):.4f} meV nm"
+    panel.set_title(text)
+
+
+def _misfit(panel: Any, result: xr.Dataset) -> None:
+    position = np.arange(len(CONDUCTANCES))
+    panel.bar(position, result["misfit"], 0.6, color="C0", label="misfit")
+    panel.plot(position, result.attrs["noise"], "k_", ms=18, label="stated noise")
+    names = [rf"$G_\mathrm{{{name[2:]}}}$" for name in CONDUCTANCES]
+    panel.set_xticks(position, names)
+    panel.set(ylabel="root mean square [$e^2/h$]", ylim=(0, None))
+    panel.legend(frameon=False)
+
+
+def _conductances(
+    figure: Any, measured: Any, explained: Any, result: xr.Dataset, measurement: Measurement
+) -> None:
+    """Show the first channel that was measured, at the bias next to zero."""
+    there = np.isfinite(measurement.G).any(axis=(0, 1, 2))
+    channel = int(there.argmax())
+    name, at = CONDUCTANCES[channel], int(abs(measurement.bias).argmin())
+    G = np.ma.masked_invalid(measurement.G[:, :, at, channel])
+    answer = result[name].to_numpy()[:, :, at]
+    largest = max(abs(G).max(), abs(answer).max())
+    local = name in ("G_LL", "G_RR")
+    norm = {"vmin": 0 if local else -largest, "vmax": largest}
+    norm["cmap"] = "viridis" if local else "RdBu_r"
+    for panel, values, title in ((measured, G, "measured"), (explained, answer, "explained")):
+        image = _map(panel, measurement.mu, measurement.B, values, **norm)
+        panel.set_title(rf"$G_\mathrm{{{name[2:]}}}$ {title}")
+    explained.set_ylabel("")
+    figure.colorbar(image, ax=[measured, explained], label="$e^2/h$", location="bottom", aspect=30)
+
+
+def _maps(figure: Any, visibility: Any, probability: Any, result: xr.Dataset) -> None:
+    grids = result["map_mu"].to_numpy(), result["map_B"].to_numpy()
+    T = _map(visibility, *grids, result["T_IV"][0], cmap="RdBu", vmin=-1, vmax=1)
+    P = _map(probability, *grids, result["P_topological"], cmap="Purples", vmin=0, vmax=1)
+    visibility.set_title(r"$T_\mathrm{IV}$ of the mean")
+    probability.set_title("$P$(topological)")
+    for panel, image in ((visibility, T), (probability, P)):
+        panel.set_ylabel("")
+        figure.colorbar(image, ax=panel, location="bottom", aspect=15)
+
+
+def _map(panel: Any, mu: FloatArray, B: FloatArray, values: Any, **options: Any) -> Any:
+    panel.set(xlabel="$B$ [T]", ylabel=r"$\mu$ [meV]")
+    return panel.pcolormesh(B, mu, values, shading="nearest", rasterized=True, **options)

@@ -1,0 +1,91 @@
+"""The last micro-electronvolts: Gauss–Newton steps on the exact posterior, and Laplace's spread.
+
+The derivatives are central differences of the thermal averages along the principal axes of the
+present posterior, half a deviation to either side: where the data say little the steps are long, so
+that the simulation's own error (10⁻⁵ e²/h) does not pass for a slope. (`conductance_gradient` has
+the derivatives at zero temperature, of peaks far narrower than kT, whose average would take
+thousands of energies.)
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from disorder_landscape.inference.observation import Observation
+from disorder_landscape.inference.unknowns import Gaussian, Unknowns
+from disorder_landscape.physics.parameters import FloatArray
+
+DIFFERENCE = 0.5
+"""Step of the differences in deviations of the posterior, …"""
+LEAST_DIFFERENCE = 2e-5
+"""… or, if that is more, in meV per site, root mean square: a two-hundredth of kT at 50 mK."""
+ALPHA_UNIT = 50.0
+"""Change of α in nm for that of V in meV that is as large to the conductances."""
+STEPS = 12
+DAMPING = 4.0, 1e-2, 1e6
+"""Factor, first and largest value of Levenberg's and Marquardt's damping."""
+ENOUGH = 0.1
+"""Done when a step lowers −2 log(posterior) by less than this: by a third of a deviation."""
+
+
+def polish(observation: Observation, start: Gaussian, steps: int = STEPS) -> Gaussian:
+    """Return the local optimum that damped Gauss–Newton steps lead to, with Laplace's covariance.
+
+    Parameters
+    ----------
+    observation : Observation
+    start : Gaussian
+        Where to start, and how far the conductances are linear about it.
+    steps : int
+        At most.
+    """
+    prior, variance = observation.unknowns.prior, observation.variance
+    precision = np.linalg.inv(prior.covariance)
+
+    def objective(x: FloatArray, y: FloatArray) -> float:
+        off = x - prior.mean
+        return float(((observation.data - y) ** 2 / variance).sum() + off @ precision @ off)
+
+    x, (factor, first, largest) = start.mean, DAMPING
+    y, slope = linearise(observation, start)
+    best, damping = objective(x, y), 0.0
+    for _ in range(steps):
+        information = (slope / variance) @ slope.T + precision
+        downhill = (slope / variance) @ (observation.data - y) - precision @ (x - prior.mean)
+        while True:
+            damped = information + damping * np.diag(np.diag(information))
+            tried = x + np.linalg.solve(damped, downhill)
+            shown = observation.simulate(tried[None])[0]
+            found = objective(tried, shown)
+            if found < best or damping > largest:
+                break
+            damping = max(first, factor**2 * damping)
+        gained = best - found
+        if gained > 0:
+            x, y, best = tried, shown, found
+        if gained < ENOUGH:
+            break
+        slope = linearise(observation, Gaussian(x, np.linalg.inv(information)))[1]
+        damping = 0.0 if damping <= first else damping / factor
+    covariance = np.linalg.inv((slope / variance) @ slope.T + precision)
+    return Gaussian(x, (covariance + covariance.T) / 2)
+
+
+def linearise(observation: Observation, about: Gaussian) -> tuple[FloatArray, FloatArray]:
+    """Return the data at the mean of a distribution (datum,) and the slopes (unknown, datum)."""
+    unit = _units(observation.unknowns)
+    variance, axes = np.linalg.eigh(about.covariance / np.outer(unit, unit))
+    reach = np.maximum(DIFFERENCE * np.sqrt(np.maximum(variance, 0.0)), LEAST_DIFFERENCE)
+    steps = (axes * reach).T * unit
+    Y = observation.simulate(np.concatenate([[about.mean], about.mean + steps, about.mean - steps]))
+    up, down = np.split(Y[1:], 2)
+    return Y[0], np.linalg.solve(steps, (up - down) / 2)
+
+
+def _units(unknowns: Unknowns) -> FloatArray:
+    """Return changes of the unknowns that are alike to the conductances, shape (unknown,)."""
+    unit = np.full(len(unknowns.names), np.sqrt(unknowns.config.sites))
+    unit[-1] = 1.0
+    if "alpha" in unknowns.names:
+        unit[unknowns.names.index("alpha")] = ALPHA_UNIT
+    return unit

@@ -1,0 +1,30 @@
+"""What whoever waits for an inversion sees."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from tqdm import tqdm
+
+from disorder_landscape.inference.inversion import Told
+from disorder_landscape.inference.smoother import SmootherSettings, Step
+
+USUAL_STEPS = 7
+"""Steps that most inversions take: what the time left is estimated from."""
+
+
+@contextmanager
+def inference_progress() -> Iterator[Told]:
+    """Give a progress bar of one inversion, to be told of every step."""
+    with tqdm(total=USUAL_STEPS, unit=" steps", desc="infer") as bar:
+
+        def told(attempt: int, number: int, step: Step) -> None:
+            most = attempt * USUAL_STEPS + max(USUAL_STEPS, number + 2)
+            bar.total = min(most, (attempt + 1) * SmootherSettings.steps)
+            spread = f"spread {1e3 * step.spread:.3g} µeV"
+            bar.set_postfix_str(f"attempt {attempt + 1}, misfit {step.misfit:.5f} e²/h, {spread}")
+            bar.update()
+
+        yield told
+        bar.total = bar.n

@@ -1,0 +1,46 @@
+"""What `landscape infer` reads from its options, and the lines that it prints."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from disorder_landscape.arguments import ArgumentError
+from disorder_landscape.physics.labels import CONDUCTANCES
+
+
+def parse_noise(text: str) -> float | dict[str, float]:
+    """Return the noise that "0.01" or "0.01,0.01,0.001,0.001" describes.
+
+    Raises
+    ------
+    ArgumentError
+        If the text is something else.
+    """
+    try:
+        values = [float(part) for part in text.split(",")]
+    except ValueError:
+        values = []
+    if len(values) == 1:
+        return values[0]
+    if len(values) != len(CONDUCTANCES):
+        must = f"be a number in e²/h, or one for each of {', '.join(CONDUCTANCES)}"
+        raise ArgumentError("noise", must, f"it is '{text}'")
+    return dict(zip(CONDUCTANCES, values, strict=True))
+
+
+def summary(result: xr.Dataset) -> list[str]:
+    """Return the lines that tell what `infer` has found."""
+    deviation = float(np.sqrt((result["potential_deviation"] ** 2).mean()))
+    alpha = result["alpha"]
+    attrs = result.attrs
+    lines = [
+        f"verdict         {attrs['verdict']}",
+        f"from            {attrs['start']}; attempts: {attrs['attempts']}, steps: {attrs['steps']}",
+        f"deviation of V  {1e3 * deviation:.3g} µeV, root mean square over the sites",
+        f"alpha           {float(alpha.mean()):.5g} ± {float(alpha.std()):.2g} meV nm",
+    ]
+    misfits = zip(result["channel"].to_numpy(), result["misfit"].to_numpy(), strict=True)
+    for (name, misfit), noise in zip(misfits, attrs["noise"], strict=True):
+        lines.append(f"misfit of {name}  {misfit:.5f} e²/h; noise: {noise:g} e²/h")
+    return lines

@@ -1,0 +1,128 @@
+"""Inversions of fresh wires whose disorder is known: how far off the answers are, and their spread.
+
+One row per wire and noise, with what the accuracy, the calibration and the verdicts are judged by.
+Rows are functions of (model, noise, index) alone, so that any order or interruption gives the same
+table.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from disorder_landscape.chain import shipped_model
+from disorder_landscape.dataset.realizations import realization
+from disorder_landscape.files import replacing
+from disorder_landscape.inference.inversion import best, invert, verdict
+from disorder_landscape.inference.measurement import Measurement
+from disorder_landscape.inference.observation import Observation, noise_of_channels
+from disorder_landscape.inference.unknowns import Unknowns
+from disorder_landscape.learning.model import TrainedModel, load_model
+from disorder_landscape.physics.parameters import FloatArray
+
+SEED = 2026
+"""Of the fresh wires; the datasets' is 0."""
+KEYS = ["model", "noise", "index"]
+
+
+@dataclass(frozen=True)
+class Task:
+    """One inversion: a shipped model's name, the noise in e²/h, the index of a fresh wire."""
+
+    model: str
+    noise: float
+    index: int
+
+
+@lru_cache
+def _model(name: str) -> TrainedModel:
+    return load_model(shipped_model(name))
+
+
+def fresh_wire(task: Task) -> tuple[Observation, FloatArray]:
+    """Return a measurement of a fresh wire, with errors, and its true unknowns (unknown,)."""
+    config = _model(task.model).config.dataset.model_copy(update={"seed": SEED})
+    unknowns = Unknowns(config)
+    one = realization(config, task.index)
+    values = {f"c_{n}": c for n, c in enumerate(one.components, start=1)}
+    values |= {"alpha": one.alpha} if config.alpha_is_label else {}
+    truth = unknowns.vector({**values, "mean": one.potential.mean()})
+    barrier = (config.wire.barrier, config.wire.barrier)
+    empty = np.zeros((config.mu_points, config.B_points, len(config.bias), 4))
+    settings = Measurement(
+        empty, config.mu, config.B, np.array(config.bias), 0.0, barrier, config.temperature
+    )
+    noise = noise_of_channels(task.noise)
+    G = Observation(settings, unknowns, noise).conductances(truth[None])[0]
+    rng = np.random.default_rng([SEED, task.index, 1])
+    measured = G + task.noise * rng.normal(size=G.shape)
+    return Observation(replace(settings, G=measured), unknowns, noise), truth
+
+
+def inversion_row(task: Task) -> dict[str, object]:
+    """Invert the measurement of a fresh wire and compare the answer with the truth.
+
+    Returns
+    -------
+    dict
+        V errors in meV, root mean square over the sites; the errors of α in meV nm; `scaled_error`,
+        the mean square error of the paper's labels in units of their variance, which is 1 − R²;
+        `spread`, the answer's own deviation of V; `deviations`, the true unknowns' distances from
+        the answer in units of its deviations; `mahalanobis`, all of them together squared.
+    """
+    observation, truth = fresh_wire(task)
+    unknowns, network = observation.unknowns, _model(task.model)
+    begun = time.perf_counter()
+    attempts = invert(observation, network, seed=task.index)
+    seconds = time.perf_counter() - begun
+    chosen = best(attempts)
+    mean, covariance = chosen.answer.mean, chosen.answer.covariance
+    G = observation.measurement.G[None].astype(np.float32)
+    labels = network.labels.names
+    guess = unknowns.vector(dict(zip(labels, network.predict_labels(G).T, strict=True)))[0]
+    papers = np.array([name != "mean" for name in unknowns.names])
+    variance = np.diag(unknowns.prior.covariance)
+    row: dict[str, object] = {
+        "model": task.model,
+        "noise": task.noise,
+        "index": task.index,
+        "network_error": unknowns.site_distance(guess, truth),
+        "site_error": unknowns.site_distance(mean, truth),
+        "spread": unknowns.site_deviation(covariance),
+        "network_scaled_error": ((guess - truth) ** 2 / variance)[papers].mean(),
+        "scaled_error": ((mean - truth) ** 2 / variance)[papers].mean(),
+        "network_alpha_error": abs(unknowns.alpha(guess) - unknowns.alpha(truth)),
+        "alpha_error": abs(unknowns.alpha(mean) - unknowns.alpha(truth)),
+        "mahalanobis": (truth - mean) @ np.linalg.solve(covariance, truth - mean),
+        "excess": chosen.excess,
+        "verdict": verdict(observation, attempts),
+        "attempts": len(attempts),
+        "steps": sum(attempt.steps for attempt in attempts),
+        "seconds": seconds,
+    }
+    row = {k: float(f"{v:.5g}") if isinstance(v, float | np.ndarray) else v for k, v in row.items()}
+    z = (truth - mean) / np.sqrt(np.diag(covariance))
+    return {**row, "deviations": " ".join(f"{one:.3f}" for one in z)}
+
+
+def read_rows(path: Path) -> pd.DataFrame:
+    """Return the table; empty if there is none."""
+    return pd.read_csv(path) if path.exists() else pd.DataFrame(columns=KEYS)
+
+
+def write_rows(table: pd.DataFrame, path: Path) -> None:
+    """Write the table, sorted."""
+    with replacing(path) as temporary:
+        table.sort_values(KEYS).to_csv(temporary, index=False)
+
+
+def missing(tasks: Sequence[Task], table: pd.DataFrame) -> Iterable[Task]:
+    """Return the tasks that the table has no row of."""
+    there = {(m, float(n), int(i)) for m, n, i in table[KEYS].itertuples(index=False)}
+    return [task for task in tasks if (task.model, task.noise, task.index) not in there]
