@@ -39,12 +39,10 @@ class InversionSettings:
     """How many attempts there are, and how each goes about it."""
 
     smoother: SmootherSettings = field(default_factory=SmootherSettings)
-    attempts: int = 4
-    """The first starts from the network's guess, the next from the disorder model's prior, further
-    ones from the guess with a wider error."""
-    wider: float = 2.0
-    """Each further attempt from the guess widens the error by this factor."""
-    more_members: float = 1.5
+    wider: tuple[float | None, ...] = (1.0, 2.0, None, 4.0)
+    """Of each attempt: how many times the error of the network's guess it starts with; None starts
+    from the disorder model's prior."""
+    more_members: float = 1.25
     """Each further attempt has so many times the members, and shrinks their spread more slowly."""
 
 
@@ -93,7 +91,7 @@ def invert(
     checkpoint : Checkpoint, optional
         What an interrupted run has found.
     """
-    recall = (checkpoint or Checkpoint()).recall
+    recall = (checkpoint if checkpoint is not None else Checkpoint()).recall
     settings = settings if settings is not None else InversionSettings()
     attempts: list[Attempt] = []
     prior = guess = observation.unknowns.prior
@@ -101,9 +99,8 @@ def invert(
         rng = np.random.default_rng([seed, 2**31])
         make = partial(network_guess, model, observation, rng)
         guess = _recalled(recall, "guess", make)
-    for number in range(settings.attempts):
-        wider = settings.wider ** (number // 2)
-        start = prior if number % 2 else Gaussian(guess.mean, wider**2 * guess.covariance)
+    for number, wider in enumerate(settings.wider):
+        start = prior if wider is None else Gaussian(guess.mean, wider**2 * guess.covariance)
         smoother = _with_more_members(settings, number)
         step, steps = None, 0
         for step in smooth(observation, start, [seed, number], smoother, recall):

@@ -1,0 +1,201 @@
+"""Inversions of short wires whose disorder is known, and of the fixed wire of the README."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import disorder_landscape as dl
+from disorder_landscape import ArgumentError, Nanowire, conductance
+from disorder_landscape.chain import FIVE, shipped_model
+from disorder_landscape.config import Config, DatasetConfig
+from disorder_landscape.dataset.realizations import realization
+from disorder_landscape.inference.inversion import CONVERGED, NOT_CONVERGED, NOT_DESCRIBED
+from disorder_landscape.inference.report import parse_noise, summary
+from disorder_landscape.learning.model import TrainedModel
+from disorder_landscape.learning.scaling import LabelScaler
+from disorder_landscape.physics.labels import CONDUCTANCES
+
+NOISE = 0.001
+DATASET = DatasetConfig(
+    realizations=1, components=2, sites=100, mu_points=6, B_points=6, bias=(-0.03, 0.0, 0.03)
+)
+LABELS = LabelScaler(("c_1", "c_2", "alpha"), np.zeros(3), np.ones(3))
+MODEL = TrainedModel(None, LABELS, None, Config(dataset=DATASET))
+"""A disorder model without a network."""
+TRUE = realization(DATASET, 3)
+
+
+def measure(wire, noise=NOISE, config=DATASET, **options):
+    G = conductance(wire, config.mu, config.B, config.bias, **options)
+    rng = np.random.default_rng(1)
+    for name in CONDUCTANCES:
+        G[name] += noise * rng.normal(size=G[name].shape)
+    return G
+
+
+def infer(G, noise=NOISE, **options):
+    return dl.infer(G, MODEL, noise, network=False, **options)
+
+
+def site_error(result, potential=TRUE.potential):
+    return float(np.sqrt(((result["potential_mean"] - potential) ** 2).mean()))
+
+
+@pytest.fixture(scope="module")
+def measured():
+    return measure(TRUE.wire)
+
+
+@pytest.fixture(scope="module")
+def inferred(measured):
+    return infer(measured)
+
+
+def test_the_disorder_is_found_within_its_error_bars(inferred):
+    assert inferred.attrs["verdict"] == CONVERGED
+    spread = float(np.sqrt((inferred["potential_deviation"] ** 2).mean()))
+    assert spread < 0.005
+    assert site_error(inferred) < 3 * spread
+    alpha = inferred["alpha"]
+    assert abs(float(alpha.mean()) - TRUE.alpha) < 4 * float(alpha.std())
+    np.testing.assert_allclose(inferred["misfit"], NOISE, rtol=0.25)
+
+
+def test_the_members_are_what_the_result_says_of_them(inferred):
+    V = inferred["potential"]
+    assert V.dims == ("member", "site")
+    assert V.sizes == {"member": 64, "site": 100}
+    np.testing.assert_allclose(V.mean("member"), inferred["potential_mean"], atol=1e-12)
+    np.testing.assert_allclose(V.std("member"), inferred["potential_deviation"], rtol=0.4)
+    member = Nanowire(V[5].to_numpy(), alpha=float(inferred["alpha"][5]))
+    maps = inferred["map_mu"], inferred["map_B"]
+    T = dl.topological_visibility(member, *maps).isel(lead=0)
+    certain = inferred["P_topological"].isin([0.0, 1.0]).to_numpy()
+    assert certain.mean() > 0.9
+    np.testing.assert_array_equal(
+        T.to_numpy()[certain] < 0, inferred["P_topological"].to_numpy()[certain]
+    )
+    mean = Nanowire(inferred["potential_mean"].to_numpy(), alpha=float(inferred["alpha"].mean()))
+    G = conductance(mean, DATASET.mu, DATASET.B, DATASET.bias)
+    for name in CONDUCTANCES:
+        np.testing.assert_allclose(inferred[name], G[name], atol=1e-6)
+
+
+def test_channels_and_numbers_may_be_missing(measured):
+    G = measured.drop_vars(["G_LR", "G_RL"])
+    G["G_LL"] = G["G_LL"].where(G["mu"] != G["mu"][2])
+    result = dl.infer(G, MODEL, NOISE)  # the network would be used if it could
+    assert result.attrs["verdict"] == CONVERGED
+    assert "some are missing" in result.attrs["start"]
+    assert site_error(result) < 0.01
+    assert (result["misfit"][2:] == 0).all()
+
+
+def test_settings_are_the_measurements_own(measured):
+    wire = replace(TRUE.wire, barrier=(30.0, 10.0))
+    result = infer(measure(wire, temperature=0.04))
+    assert result.attrs["verdict"] == CONVERGED
+    assert site_error(result) < 0.02
+    G = measured.assign_attrs({})
+    assert infer(G).attrs["barrier"] == (15.0, 15.0)
+
+
+def test_what_the_model_cannot_explain_is_flagged():
+    small_gap = replace(TRUE.wire, delta0=0.096)
+    assert infer(measure(small_gap)).attrs["verdict"] in (NOT_DESCRIBED, NOT_CONVERGED)
+    more_components = realization(DATASET.model_copy(update={"components": 12}), 3)
+    result = infer(measure(more_components.wire))
+    assert result.attrs["verdict"] in (NOT_DESCRIBED, NOT_CONVERGED)
+    assert result.attrs["attempts"] > 1
+
+
+def test_an_interrupted_run_goes_on(measured, inferred, tmp_path):
+    checkpoint = tmp_path / "unfinished.json"
+    first, second = [], []
+
+    def interrupt(attempt, number, step):
+        first.append(number)
+        if number == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        infer(measured, checkpoint=checkpoint, told=interrupt)
+    assert checkpoint.exists()
+    begun = checkpoint.read_text()
+    result = infer(measured, checkpoint=checkpoint, told=lambda *step: second.append(step))
+    assert not checkpoint.exists()
+    assert len(second) == inferred.attrs["steps"]
+    assert result.identical(inferred)
+    checkpoint.write_text(begun)
+    other = infer(measured, noise=0.002, checkpoint=checkpoint)  # ignores what is another run's
+    assert other.identical(infer(measured, noise=0.002))
+
+
+def test_the_seed_decides(measured, inferred):
+    other = infer(measured, seed=1)
+    assert not other.identical(inferred)
+    np.testing.assert_allclose(
+        other["potential_mean"],
+        inferred["potential_mean"],
+        atol=float(inferred["potential_deviation"].max()),
+    )
+
+
+@pytest.mark.parametrize(
+    ("change", "options", "message"),
+    [
+        (lambda G: G, {"noise": -0.1}, "noise must be a number from 0 to 1 e²/h, but it is -0.1"),
+        (lambda G: G, {"noise": {"G_LL": 0.1}}, "noise must be one number, or one for each of"),
+        (lambda G: G, {"members": 3}, "members must be an even number"),
+        (
+            lambda G: G * 3.874e-5,
+            {},
+            "in e²/h, which is 3.874e-05 S, .* as if they were in siemens",
+        ),
+        (lambda G: G.assign(G_LL=G["G_LL"].assign_attrs(units="S")), {}, "units of G_LL are S"),
+        (lambda G: G * np.nan, {}, "hold finite numbers, but it holds none"),
+        (lambda G: G / 0.0, {}, "hold finite numbers"),
+        (lambda G: G.isel(mu=0), {}, "its dims are B, bias"),
+        (lambda G: G.drop_vars(CONDUCTANCES), {}, "it lacks G_LL, G_RR, G_LR, G_RL"),
+        (lambda G: G.isel(mu=slice(5)), {"network": True}, "it differs in mu"),
+        (lambda G: G.isel(B=slice(None, None, -1)), {}, "B must be .* not sorted"),
+    ],
+)
+def test_bad_input_is_refused_in_one_sentence(measured, change, options, message):
+    options = {"noise": NOISE, "network": False} | options
+    with np.errstate(all="ignore"):
+        G = change(measured)
+    with pytest.raises(ArgumentError, match=message):
+        dl.infer(G, MODEL, **options)
+
+
+def test_noise_from_the_command_line():
+    assert parse_noise("0.01") == 0.01
+    assert parse_noise("0.01,0.02,0.003,0.004")["G_LR"] == 0.003
+    for text in ("much", "0.1,0.2", ""):
+        with pytest.raises(ArgumentError, match="noise must be a number in e²/h, or one for each"):
+            parse_noise(text)
+
+
+def test_the_summary_says_it_all(inferred):
+    lines = "\n".join(summary(inferred))
+    assert "verdict         converged" in lines
+    assert "from            the prior; attempts: 1" in lines
+    assert lines.count("noise: 0.001 e²/h") == 4
+
+
+def test_the_shipped_network_and_the_smoother_find_a_fixed_wire():
+    """The paper's sizes, the network's guess and an error of 0.01 e²/h: some µeV."""
+    from disorder_landscape.learning.model import load_model
+
+    model = load_model(shipped_model(FIVE))
+    config = model.config.dataset.model_copy(update={"seed": 2026})
+    true = realization(config, 1)
+    G = measure(true.wire, 0.01, config)
+    guess = dl.predict(model, G)
+    result = dl.infer(G, model, 0.01)
+    assert result.attrs["verdict"] == CONVERGED
+    assert result.attrs["start"] == "the network's guess"
+    assert site_error(result, true.potential) < 0.002
+    assert float(np.sqrt(((guess["potential"] - true.potential) ** 2).mean())) > 0.01

@@ -1,0 +1,189 @@
+"""Smoother, polish and Markov chain on problems whose posterior is known."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import pytest
+
+from disorder_landscape.config import DatasetConfig
+from disorder_landscape.inference.checkpoint import Checkpoint
+from disorder_landscape.inference.inversion import chi_square_excess
+from disorder_landscape.inference.observation import Observation, noise_of_channels
+from disorder_landscape.inference.polish import linearise, polish
+from disorder_landscape.inference.posterior import independence_chain
+from disorder_landscape.inference.smoother import SmootherSettings, Step, regression, smooth
+from disorder_landscape.inference.unknowns import Gaussian, Unknowns
+from disorder_landscape.physics.disorder import disorder_realization
+
+CONFIG = DatasetConfig(realizations=1, components=3, sites=50)
+UNKNOWNS = Unknowns(CONFIG)
+SIZE = len(UNKNOWNS.names)
+SETTINGS = SmootherSettings()
+
+
+@dataclass
+class Linear:
+    """Data that are linear in the unknowns, or bent."""
+
+    data: np.ndarray
+    slope: np.ndarray
+    bend: float = 0.0
+    unknowns: Unknowns = UNKNOWNS
+    variance: np.ndarray = field(default_factory=lambda: np.full(40, 0.01**2))
+
+    def simulate(self, X):
+        Y = X @ self.slope
+        return Y + self.bend * np.sin(5 * Y)
+
+    def on_some_lines(self, share, rng):
+        return self
+
+
+@pytest.fixture(scope="module")
+def linear():
+    rng = np.random.default_rng(0)
+    slope = rng.normal(size=(SIZE, 40))
+    truth = UNKNOWNS.prior.draw(rng, 2)[0]
+    return Linear(truth @ slope + 0.01 * rng.normal(size=40), slope)
+
+
+def posterior(observation):
+    """Bayes' theorem for linear data."""
+    prior, precision = UNKNOWNS.prior, np.linalg.inv(UNKNOWNS.prior.covariance)
+    weighted = observation.slope / observation.variance
+    covariance = np.linalg.inv(weighted @ observation.slope.T + precision)
+    return Gaussian(covariance @ (weighted @ observation.data + precision @ prior.mean), covariance)
+
+
+def test_the_smoother_ends_at_the_posterior_and_stays_there(linear):
+    """No datum counts twice, however many steps there are."""
+    exact = posterior(linear)
+    settings = SmootherSettings(steps=30, linear=0.0)  # never done
+    *_, last = smooth(linear, UNKNOWNS.prior, [0], settings)
+    np.testing.assert_allclose(last.distribution.mean, exact.mean, rtol=1e-6, atol=1e-9)
+    scale = np.sqrt(np.diag(exact.covariance))
+    relative = last.distribution.covariance / np.outer(scale, scale)
+    reduced = max(1.0, ((linear.simulate(exact.mean) - linear.data) ** 2 / linear.variance).mean())
+    np.testing.assert_allclose(
+        relative, reduced * exact.covariance / np.outer(scale, scale), atol=1e-6
+    )
+
+
+def test_the_smoother_stops_where_nothing_changes(linear):
+    steps = list(smooth(linear, UNKNOWNS.prior, [0], SETTINGS))
+    assert 3 < len(steps) < SETTINGS.steps
+    assert [step.is_last(SETTINGS) for step in steps] == [False] * (len(steps) - 1) + [True]
+    spreads = [step.spread for step in steps]
+    assert (np.diff(spreads) <= 1e-12).all()
+
+
+def test_what_the_line_cannot_explain_keeps_the_members_apart(linear):
+    bent = Linear(linear.data, linear.slope, bend=0.3)
+    first_bent, first = (
+        next(iter(smooth(one, UNKNOWNS.prior, [0], SETTINGS))) for one in (bent, linear)
+    )
+    assert first.unexplained < 1e-6 < 1 < first_bent.unexplained
+    *_, last = smooth(bent, posterior(linear), [0], SETTINGS)
+    assert last.unexplained < SETTINGS.linear
+
+
+def test_regression_is_exact_for_lines():
+    rng = np.random.default_rng(1)
+    X, slope = rng.normal(size=(12, 3)), rng.normal(size=(3, 7))
+    at, value, found, residual = regression(X, X @ slope + 2.0)
+    np.testing.assert_allclose(found, slope, atol=1e-12)
+    np.testing.assert_allclose(value, at @ slope + 2.0, atol=1e-12)
+    np.testing.assert_allclose(residual, 0.0, atol=1e-20)
+    noisy = X @ slope + rng.normal(size=(12, 7))
+    assert regression(X, noisy)[3].mean() == pytest.approx(1.0, abs=0.5)
+
+
+def test_polish_ends_at_the_posterior(linear):
+    exact = posterior(linear)
+    found = polish(linear, Gaussian(exact.mean + 0.01, 1e-4 * np.eye(SIZE)))
+    np.testing.assert_allclose(found.mean, exact.mean, rtol=1e-6, atol=1e-9)
+    np.testing.assert_allclose(found.covariance, exact.covariance, rtol=1e-5, atol=1e-12)
+
+
+def test_slopes_are_the_derivatives(linear):
+    value, slope = linearise(linear, Gaussian(np.ones(SIZE), 1e-2 * np.eye(SIZE)))
+    np.testing.assert_allclose(value, linear.slope.sum(axis=0), rtol=1e-12)
+    np.testing.assert_allclose(slope, linear.slope, atol=1e-9)
+
+
+def test_the_chain_has_the_posteriors_moments(linear):
+    exact = posterior(linear)
+    chain = independence_chain(linear, exact, 4000, np.random.default_rng(2))
+    assert 0.5 < chain.acceptance <= 1.0
+    scale = np.sqrt(np.diag(exact.covariance))
+    assert abs((chain.members.mean(axis=0) - exact.mean) / scale).max() < 0.15
+    np.testing.assert_allclose(chain.members.std(axis=0) / scale, 1.0, atol=0.1)
+    too_narrow = Gaussian(exact.mean, exact.covariance / 4)
+    wide = independence_chain(linear, too_narrow, 4000, np.random.default_rng(2))
+    assert wide.acceptance < chain.acceptance
+
+
+def test_the_prior_is_the_disorder_models():
+    rng = np.random.default_rng(3)
+    drawn = [disorder_realization(rng, 3, 50) for _ in range(4000)]
+    values = np.array([[*c, V.mean()] for c, V in drawn])
+    covariance = UNKNOWNS.prior.covariance[np.ix_([0, 1, 2, 4], [0, 1, 2, 4])]
+    scale = np.sqrt(np.diag(covariance))
+    np.testing.assert_allclose(
+        np.cov(values.T) / np.outer(scale, scale), covariance / np.outer(scale, scale), atol=0.08
+    )
+    assert scale[-1] == pytest.approx(0.01)
+    assert UNKNOWNS.prior.mean[3] == pytest.approx(8.0)
+
+
+def test_deviations_of_the_potential_need_no_potential():
+    rng = np.random.default_rng(4)
+    one, other = UNKNOWNS.prior.draw(rng, 2)
+    apart = UNKNOWNS.potential(one) - UNKNOWNS.potential(other)
+    assert UNKNOWNS.site_distance(one, other) == pytest.approx(np.sqrt((apart**2).mean()))
+    X = UNKNOWNS.prior.draw(rng, 20_000)
+    spread = np.sqrt(UNKNOWNS.potential(X).var(axis=0).mean())
+    assert UNKNOWNS.site_deviation(UNKNOWNS.prior.covariance) == pytest.approx(spread, rel=0.02)
+    wire = UNKNOWNS.wires(one[None], (1.0, 2.0))[0]
+    np.testing.assert_array_equal(wire.potential, UNKNOWNS.potential(one))
+    assert (wire.alpha, wire.barrier) == (UNKNOWNS.alpha(one), (1.0, 2.0))
+
+
+def test_names_and_vectors():
+    assert UNKNOWNS.names == ("c_1", "c_2", "c_3", "alpha", "mean")
+    x = UNKNOWNS.vector({"c_2": np.array([1.0, 2.0])})
+    np.testing.assert_array_equal(x, [[0, 1, 0, 8, 0], [0, 2, 0, 8, 0]])
+    fixed = Unknowns(CONFIG.model_copy(update={"alpha_range": (7.0, 7.0)}))
+    assert fixed.names == ("c_1", "c_2", "c_3", "mean")
+    assert fixed.alpha(np.zeros(4)) == 7.0
+
+
+def test_steps_and_checkpoints_survive_json(linear, tmp_path):
+    step = next(iter(smooth(linear, UNKNOWNS.prior, [0], SETTINGS)))
+    path = tmp_path / "notes.json"
+    notes = Checkpoint(path, b"run")
+    notes.recall("step", step.to_dict)
+    again = Checkpoint(path, b"run")
+    assert len(again) == 1
+    read = Step.from_dict(again.recall("step", lambda: pytest.fail("calculated again")))
+    np.testing.assert_array_equal(read.distribution.covariance, step.distribution.covariance)
+    assert len(Checkpoint(path, b"another run")) == 0
+    again.remove()
+    assert not path.exists()
+
+
+def test_excess_looks_at_each_channel():
+    class Channels:
+        channel = np.repeat(np.arange(4), 100)
+
+    squares = np.ones(400)
+    assert chi_square_excess(Channels, squares) == pytest.approx(0.0)
+    squares[:100] = 2.0  # one channel is off
+    assert chi_square_excess(Channels, squares) == pytest.approx(100 / np.sqrt(200))
+
+
+def test_noise_by_channel():
+    np.testing.assert_array_equal(noise_of_channels(0.1), [0.1] * 4)
+    named = {"G_RL": 4.0e-3, "G_LL": 1.0e-3, "G_LR": 3.0e-3, "G_RR": 2.0e-3}
+    np.testing.assert_array_equal(noise_of_channels(named), [1e-3, 2e-3, 3e-3, 4e-3])
+    assert Observation.__dataclass_fields__.keys() >= {"measurement", "unknowns", "noise"}
