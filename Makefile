@@ -28,7 +28,7 @@ COMPILE := .venv/bin/uv pip compile --universal --python-version 3.11 --generate
 
 STARTED := $(shell date +%s)
 
-.PHONY: help setup generate train evaluate figures $(FIGURES) bench accuracy study
+.PHONY: help setup generate train evaluate figures $(FIGURES) bench accuracy study inversion-study
 .PHONY: claims claims-table report test lint lock clean
 .SUFFIXES:
 # One after the other: each command uses all cores by itself.
@@ -69,6 +69,10 @@ accuracy: $(READY) ## compare 2000 thermal averages with the integral by brute f
 
 study: $(READY) ## carry out the study STUDY of configs/studies, its table into claims (hours)
 	$(LANDSCAPE) study configs/studies/$(STUDY).toml
+
+inversion-study: $(READY) ## invert 200 fresh wires at each noise, tables into claims (hours; it goes on where it was)
+	$(VENV_PYTHON) claims/inversion.py
+	$(VENV_PYTHON) claims/uniqueness.py
 
 # ONLY=id measures one claim; STORE=1 keeps what has been measured as the value that is stored.
 claims: $(READY) ## check the paper's claims: measure again what is quick, table into build/claims.md

@@ -1,4 +1,4 @@
-"""The README's tables of claims and of conventions, written between marks from stored results."""
+"""The README's tables of claims and of studies, written between marks from stored results."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.claim import load_claims
 from disorder_landscape.claims.conventions import conventions_table
 from disorder_landscape.claims.findings import stored_findings
+from disorder_landscape.claims.inversions import accuracy_table, uniqueness_table
 from disorder_landscape.claims.table import COLUMNS, markdown, rows, tally
 from disorder_landscape.files import replacing
 
@@ -57,8 +58,15 @@ def claims_content() -> str:
 
 def written(text: str) -> str:
     """Return a README's text with all sections as the stored results have them."""
-    text = Section("claims").replaced(text, claims_content())
-    return Section("conventions").replaced(text, conventions_table())
+    contents = {
+        "claims": claims_content,
+        "conventions": conventions_table,
+        "inversions": accuracy_table,
+        "uniqueness": uniqueness_table,
+    }
+    for name, content in contents.items():
+        text = Section(name).replaced(text, content())
+    return text
 
 
 def write_readme(path: Path = README) -> bool:

@@ -1,0 +1,95 @@
+"""What the inversions of fresh wires came to, and how much the data say of more components."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from scipy.stats import norm
+
+from disorder_landscape.chain import REPOSITORY
+from disorder_landscape.claims.table import markdown
+from disorder_landscape.inference.inversion import CONVERGED
+from disorder_landscape.physics.parameters import FloatArray
+
+INVERSIONS = REPOSITORY / "claims" / "inversions.csv"
+UNIQUENESS = REPOSITORY / "claims" / "uniqueness.csv"
+WRONG = 0.005, 4.0
+"""An answer is wrong whose V is off by more than this in meV and by more than so many of its own
+deviations, root mean square over the sites."""
+COVERAGE = (0.5, 0.8, 0.95)
+ACCURACY_COLUMNS = (
+    "model, noise (e²/h)",
+    "wires",
+    "network: V off by (µeV)",
+    "inversion: median, 90 %, worst",
+    "its own error bar",
+    "1 − R²: network, inversion",
+    "converged",
+    "wrong: flagged, unflagged",
+    "within 50, 80, 95 % (%)",
+    "seconds, one core",
+)
+
+
+def deviations(table: pd.DataFrame) -> FloatArray:
+    """Return the truths' distances from the answers in deviations, all unknowns of all wires."""
+    return np.concatenate([np.array(text.split(), dtype=float) for text in table["deviations"]])
+
+
+def coverage(table: pd.DataFrame) -> FloatArray:
+    """Return which part of the truths the central intervals of COVERAGE hold."""
+    z = abs(deviations(table))
+    return np.array([(z < norm.ppf((1 + part) / 2)).mean() for part in COVERAGE])
+
+
+def wrong(table: pd.DataFrame) -> pd.Series:
+    """Return which answers are wrong."""
+    least, bars = WRONG
+    return (table["site_error"] > least) & (table["site_error"] > bars * table["spread"])
+
+
+def accuracy_table(path: Path = INVERSIONS) -> str:
+    """Return a Markdown table of the inversions, a row for each model and noise."""
+    rows = []
+    for (model, noise), some in pd.read_csv(path).groupby(["model", "noise"]):
+        error = 1e3 * some["site_error"]
+        is_wrong, is_converged = wrong(some), some["verdict"] == CONVERGED
+        rows.append(
+            (
+                f"{str(model).replace('_', ' ')}, {noise:g}",
+                str(len(some)),
+                f"{1e3 * some['network_error'].median():.3g}",
+                ", ".join(f"{x:.2g}" for x in (error.median(), error.quantile(0.9), error.max())),
+                f"{1e3 * some['spread'].median():.2g}",
+                f"{some['network_scaled_error'].mean():.2g}, {some['scaled_error'].mean():.1g}",
+                f"{100 * is_converged.mean():.0f} %",
+                f"{(is_wrong & ~is_converged).sum()}, {(is_wrong & is_converged).sum()}",
+                ", ".join(f"{100 * part:.0f}" for part in coverage(some)) if noise > 0 else "–",
+                f"{some['seconds'].median():.0f}",
+            )
+        )
+    return markdown(ACCURACY_COLUMNS, rows)
+
+
+def uniqueness_table(path: Path = UNIQUENESS) -> str:
+    """Return a Markdown table: combinations that the data fix, V's error bar (medians)."""
+    table = pd.read_csv(path)
+    settings = sorted(
+        {(points, biases) for points, biases in table[["points", "biases"]].to_numpy()}
+    )
+    columns = ["components, noise (e²/h)"]
+    columns += [f"{points}×{points}×{biases}" for points, biases in settings]
+    rows = []
+    for (components, noise), some in table.groupby(["components", "noise"]):
+        cells = [f"{components}, {noise:g}"]
+        for points, biases in settings:
+            at = some[(some["points"] == points) & (some["biases"] == biases)]
+            unknowns = at["unknowns"].iloc[0] if len(at) else 0
+            bar = 1e3 * at["spread"].median()
+            cells.append(
+                f"{at['fixed'].median():.0f} of {unknowns}: {bar:.2g} µeV" if len(at) else ""
+            )
+        rows.append(tuple(cells))
+    return markdown(tuple(columns), rows)

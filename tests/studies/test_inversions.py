@@ -1,0 +1,96 @@
+"""Studies of inversions: their rows, their tables, and what the Jacobian says of uniqueness."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from disorder_landscape.chain import FIVE, TEN
+from disorder_landscape.claims.inversions import (
+    accuracy_table,
+    coverage,
+    uniqueness_table,
+    wrong,
+)
+from disorder_landscape.inference.inversion import CONVERGED, NOT_CONVERGED
+from disorder_landscape.studies.inversions import Task, missing, read_rows, write_rows
+from disorder_landscape.studies.uniqueness import NOISE, Setting, information_rows
+
+
+def row(index, model=FIVE, noise=0.01, **changes):
+    z = np.random.default_rng(index).normal(size=7)
+    return {
+        "model": model,
+        "noise": noise,
+        "index": index,
+        "network_error": 0.04,
+        "site_error": 0.001,
+        "spread": 0.001,
+        "network_scaled_error": 0.05,
+        "scaled_error": 1e-4,
+        "verdict": CONVERGED,
+        "seconds": 10.0,
+        "deviations": " ".join(f"{one:.3f}" for one in z),
+    } | changes
+
+
+def test_what_is_there_is_not_done_again(tmp_path):
+    path = tmp_path / "rows.csv"
+    tasks = [
+        Task(model, noise, i) for i in range(3) for noise in (0.0, 0.01) for model in (FIVE, TEN)
+    ]
+    assert missing(tasks, read_rows(path)) == tasks
+    write_rows(pd.DataFrame([row(2), row(0, model=TEN), row(0, noise=0.0)]), path)
+    table = read_rows(path)
+    assert list(table["index"]) == [0, 2, 0]  # sorted by model, noise and index
+    left = missing(tasks, table)
+    assert len(left) == len(tasks) - 3
+    assert Task(FIVE, 0.01, 2) not in left
+
+
+def test_the_table_counts_wrong_answers_by_their_verdict(tmp_path):
+    rows = [row(i) for i in range(40)]
+    rows[0] |= {"site_error": 0.1}
+    rows[1] |= {"site_error": 0.1, "verdict": NOT_CONVERGED}
+    rows[2] |= {"site_error": 0.1, "spread": 0.05}  # far off, and says so
+    table = pd.DataFrame(rows)
+    assert wrong(table).sum() == 2
+    path = tmp_path / "rows.csv"
+    write_rows(table, path)
+    line = accuracy_table(path).splitlines()[-1]
+    assert "five components and alpha, 0.01 | 40 | 40 | 1, 1, 1e+02" in line
+    assert "| 98 % | 1, 1 |" in line
+
+
+def test_coverage_of_normal_deviations_is_nominal():
+    table = pd.DataFrame([row(i) for i in range(2000)])
+    np.testing.assert_allclose(coverage(table), [0.5, 0.8, 0.95], atol=0.02)
+
+
+@pytest.fixture(scope="module")
+def information():
+    return {
+        points: information_rows(Setting(components=3, points=points, biases=3, index=0))
+        for points in (4, 7)
+    }
+
+
+def test_more_data_and_less_noise_fix_more(information):
+    for rows in information.values():
+        assert [one["noise"] for one in rows] == list(NOISE)
+        spreads = [one["spread"] for one in rows]
+        assert spreads == sorted(spreads)
+        fixed = [one["fixed"] for one in rows]
+        assert fixed == sorted(fixed, reverse=True)
+        assert all(one["fixed"] <= one["unknowns"] == 4 for one in rows)
+        assert all(one["spread"] <= one["prior_spread"] for one in rows)
+    few, many = information[4], information[7]
+    assert many[1]["spread"] < few[1]["spread"]
+
+
+def test_the_table_of_uniqueness_has_a_column_per_grid(information, tmp_path):
+    path = tmp_path / "uniqueness.csv"
+    pd.DataFrame([one for rows in information.values() for one in rows]).to_csv(path, index=False)
+    lines = uniqueness_table(path).splitlines()
+    assert "4×4×3 | 7×7×3" in lines[0]
+    assert len(lines) == 2 + len(NOISE)
+    assert "of 4: " in lines[2]
