@@ -1,0 +1,29 @@
+"""Notebooks run from the first cell to the last, from the repository's root."""
+
+import sys
+from pathlib import Path
+
+import jupytext
+import pytest
+
+from disorder_landscape.chain import REPOSITORY
+
+sys.path.insert(0, str(REPOSITORY / "report"))  # as if run as a script
+
+from build import RunCells
+
+
+@pytest.mark.parametrize(
+    "path", sorted((REPOSITORY / "notebooks").glob("*.py")), ids=lambda p: p.stem
+)
+def test_notebook(path: Path, monkeypatch, capsys):
+    monkeypatch.chdir(REPOSITORY)
+    monkeypatch.setenv("MPLBACKEND", "Agg")
+    RunCells().preprocess(jupytext.read(path), {})
+    said = capsys.readouterr().out
+    assert "converged after" in said
+    assert "all members agree at" in said
+    off = {
+        line.split(":")[0]: float(line.split()[4]) for line in said.splitlines() if "off by" in line
+    }
+    assert off["inversion"] < 5.0 < 10.0 < off["network"]
