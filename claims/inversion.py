@@ -18,6 +18,7 @@ from tqdm import tqdm
 from disorder_landscape.chain import MODELS
 from disorder_landscape.physics.compilation import compile_kernels
 from disorder_landscape.studies.inversions import (
+    KEYS,
     Task,
     inversion_row,
     missing,
@@ -25,6 +26,8 @@ from disorder_landscape.studies.inversions import (
     write_rows,
 )
 from disorder_landscape.studies.noise import NOISE
+
+COMMAND = "python claims/inversion.py"
 
 
 def one_thread() -> None:
@@ -63,8 +66,9 @@ def main() -> None:
     ):
         for future in as_completed([pool.submit(inversion_row, task) for task in left]):
             table = pd.concat([table, pd.DataFrame([future.result()])], ignore_index=True)
-            write_rows(table, arguments.output)
+            write_rows(table, arguments.output, KEYS, COMMAND)
             bar.update()
+    write_rows(table, arguments.output, KEYS, COMMAND)
 
 
 if __name__ == "__main__":

@@ -12,12 +12,13 @@ from pathlib import Path
 import pandas as pd
 from tqdm import tqdm
 
-from disorder_landscape.files import replacing
+from disorder_landscape.studies.inversions import write_rows
 from disorder_landscape.studies.uniqueness import Setting, information_rows
 
 COMPONENTS = (5, 10, 15, 20, 30, 54)
 POINTS = (10, 20, 40)
 BIASES = (5, 21)
+COMMAND = "python claims/uniqueness.py"
 
 
 def main() -> None:
@@ -42,8 +43,8 @@ def main() -> None:
         if tuple(vars(one).values()) in there:
             continue
         table = pd.concat([table, pd.DataFrame(information_rows(one))], ignore_index=True)
-        with replacing(path) as temporary:
-            table.round({"spread": 7, "prior_spread": 7}).to_csv(temporary, index=False)
+        write_rows(table.round({"spread": 7, "prior_spread": 7}), path, [*keys, "noise"], COMMAND)
+    write_rows(table, path, [*keys, "noise"], COMMAND)
 
 
 if __name__ == "__main__":

@@ -16,7 +16,8 @@
 # checkable sentence of the paper with ours beside it, the figures, and the choices that the paper
 # leaves open.
 #
-# [Claims](#claims) · [Figures](#figures) · [Conventions](#conventions) ·
+# [Claims](#claims) · [Figures](#figures) · [Inversion](#inversion) ·
+# [Conventions](#conventions) ·
 # [Limitations](#limitations) · [Do it yourself](#again)
 
 # %%
@@ -51,6 +52,12 @@ stored_results()
 
 # %%
 drawn_figures()
+
+# %% [markdown]
+# <h2 id="inversion">Beyond the paper: from a measurement to the disorder, with error bars</h2>
+
+# %%
+readme_section("What is the disorder in this wire?")
 
 # %% [markdown]
 # <h2 id="conventions">Conventions</h2>

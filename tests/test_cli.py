@@ -8,6 +8,7 @@ import pytest
 import xarray as xr
 
 from disorder_landscape import Nanowire, conductance
+from disorder_landscape.chain import FIVE, shipped_model
 from disorder_landscape.cli import main
 
 SMALL = ["--sites", "30", "--B", "0:0.8:5", "--bias", "-0.02,0,0.02"]
@@ -228,3 +229,25 @@ def test_the_command_line_does_not_import_tensorflow():
         "assert 'tensorflow' not in sys.modules"
     )
     subprocess.run([sys.executable, "-c", script], check=True)
+
+
+def test_infer_writes_a_result_and_a_picture_without_the_network(monkeypatch, capsys, tmp_path):
+    """On a grid that the network does not know, with a channel missing: from the prior."""
+    settings = ["--seed", 3, "--sites", 300, "--mu", "0:0.6:5", "--B", "0:0.8:6", "--bias", "0"]
+    wire, output, plot = tmp_path / "wire.nc", tmp_path / "out.nc", tmp_path / "out.png"
+    landscape(monkeypatch, capsys, "simulate", *settings, "-o", wire)
+    measured = xr.load_dataset(wire, engine="h5netcdf").drop_vars("G_RL")
+    measured.to_netcdf(wire, engine="h5netcdf")
+    command = ["infer", wire, "--model", shipped_model(FIVE), "-o", output, "--plot", plot]
+    code, _, said = landscape(monkeypatch, capsys, *command)
+    assert code in (0, None)  # the network is left out, because a channel is missing
+    result = xr.load_dataset(output, engine="h5netcdf")
+    assert result.attrs["start"].startswith("the prior, because the network needs all")
+    assert plot.stat().st_size > 10_000
+    assert not output.with_name("out.nc.unfinished.json").exists()
+    code, _, said = landscape(monkeypatch, capsys, "infer", wire, "--model", tmp_path, "-o", wire)
+    assert (code, "output must be another file" in said) == (2, True)
+    options = ["--model", shipped_model(FIVE), "-o", output, "--noise", "some"]
+    code, _, said = landscape(monkeypatch, capsys, "infer", wire, *options)
+    assert (code, said.count("\n")) == (2, 1)
+    assert "noise must be a number in e²/h" in said

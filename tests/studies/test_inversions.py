@@ -1,18 +1,22 @@
 """Studies of inversions: their rows, their tables, and what the Jacobian says of uniqueness."""
 
+import hashlib
+import json
+
 import numpy as np
 import pandas as pd
 import pytest
 
 from disorder_landscape.chain import FIVE, TEN
+from disorder_landscape.claims.derived import fixed_combinations, true_answers
 from disorder_landscape.claims.inversions import (
+    SHOWN,
     accuracy_table,
     coverage,
     uniqueness_table,
-    wrong,
 )
 from disorder_landscape.inference.inversion import CONVERGED, NOT_CONVERGED
-from disorder_landscape.studies.inversions import Task, missing, read_rows, write_rows
+from disorder_landscape.studies.inversions import KEYS, Task, missing, read_rows, write_rows, wrong
 from disorder_landscape.studies.uniqueness import NOISE, Setting, information_rows
 
 
@@ -39,12 +43,14 @@ def test_what_is_there_is_not_done_again(tmp_path):
         Task(model, noise, i) for i in range(3) for noise in (0.0, 0.01) for model in (FIVE, TEN)
     ]
     assert missing(tasks, read_rows(path)) == tasks
-    write_rows(pd.DataFrame([row(2), row(0, model=TEN), row(0, noise=0.0)]), path)
+    write_rows(pd.DataFrame([row(2), row(0, model=TEN), row(0, noise=0.0)]), path, KEYS, "test")
     table = read_rows(path)
     assert list(table["index"]) == [0, 2, 0]  # sorted by model, noise and index
     left = missing(tasks, table)
     assert len(left) == len(tasks) - 3
     assert Task(FIVE, 0.01, 2) not in left
+    made = json.loads(path.with_suffix(".json").read_text())["provenance"]
+    assert made["sha256"] == hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def test_the_table_counts_wrong_answers_by_their_verdict(tmp_path):
@@ -55,10 +61,23 @@ def test_the_table_counts_wrong_answers_by_their_verdict(tmp_path):
     table = pd.DataFrame(rows)
     assert wrong(table).sum() == 2
     path = tmp_path / "rows.csv"
-    write_rows(table, path)
+    write_rows(table, path, KEYS, "test")
     line = accuracy_table(path).splitlines()[-1]
     assert "five components and alpha, 0.01 | 40 | 40 | 1, 1, 1e+02" in line
     assert "| 98 % | 1, 1 |" in line
+
+
+def test_claims_of_uniqueness(information, tmp_path):
+    path = tmp_path / "rows.csv"
+    rows = [row(i, noise=0.0) for i in range(8)] + [row(9, noise=0.1, site_error=0.3)]
+    rows[0] |= {"site_error": 0.1}
+    rows[1] |= {"site_error": 0.1, "verdict": NOT_CONVERGED}
+    write_rows(pd.DataFrame(rows), path, KEYS, "test")
+    assert true_answers(path) == pytest.approx(6 / 7)
+    table = pd.DataFrame([one for rows in information.values() for one in rows])
+    table.loc[table["noise"] == 0.01, "fixed"] = [4, 3]
+    table.to_csv(path, index=False)
+    assert fixed_combinations(path) == 0.75
 
 
 def test_coverage_of_normal_deviations_is_nominal():
@@ -92,5 +111,5 @@ def test_the_table_of_uniqueness_has_a_column_per_grid(information, tmp_path):
     pd.DataFrame([one for rows in information.values() for one in rows]).to_csv(path, index=False)
     lines = uniqueness_table(path).splitlines()
     assert "4×4×3 | 7×7×3" in lines[0]
-    assert len(lines) == 2 + len(NOISE)
+    assert len(lines) == 2 + len(SHOWN)
     assert "of 4: " in lines[2]

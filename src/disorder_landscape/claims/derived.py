@@ -11,9 +11,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 from scipy.stats import permutation_test, spearmanr
 
 from disorder_landscape.claims.claim import ResultMissingError
+from disorder_landscape.inference.inversion import CONVERGED
 from disorder_landscape.physics.parameters import FloatArray
 from disorder_landscape.studies.crossings import (
     R2_AIMED_AT,
@@ -21,8 +23,11 @@ from disorder_landscape.studies.crossings import (
     learning_curves,
     realizations_needed,
 )
+from disorder_landscape.studies.inversions import wrong
 from disorder_landscape.studies.table import read_table
 
+SMALL_NOISE = 0.01
+"""In e²/h."""
 FINE_TUNED = 10
 """Component count that the paper leaves out of its second fit of Fig. 2."""
 
@@ -89,6 +94,23 @@ def halving_independent_of_components(table: Path) -> float:
     return float(orders.pvalue)
 
 
+def true_answers(table: Path) -> float:
+    """Return which part of the inversions that explain their data have found the true disorder.
+
+    At noise up to SMALL_NOISE.
+    """
+    rows = _rows(table, "verdict")
+    explained = rows[(rows["noise"] <= SMALL_NOISE) & (rows["verdict"] == CONVERGED)]
+    return float(1 - wrong(explained).mean())
+
+
+def fixed_combinations(table: Path) -> float:
+    """Return the least part of the unknowns that data with SMALL_NOISE fix, over all settings."""
+    rows = _rows(table, "fixed")
+    some = rows[rows["noise"] == SMALL_NOISE]
+    return float((some["fixed"] / some["unknowns"]).min())
+
+
 DERIVED: dict[str, Callable[[Path], float]] = {
     function.__name__: function
     for function in (
@@ -100,9 +122,19 @@ DERIVED: dict[str, Callable[[Path], float]] = {
         gain_of_last_step,
         loss_of_halving,
         halving_independent_of_components,
+        true_answers,
+        fixed_combinations,
     )
 }
 """What a claim can name, by name."""
+
+
+def _rows(table: Path, column: str) -> pd.DataFrame:
+    """Return the rows of a study that is no training."""
+    rows = pd.read_csv(table)
+    if column not in rows or rows.empty:
+        raise ResultMissingError(f"{table.name} has no rows yet")
+    return rows
 
 
 def _needed(table: Path) -> tuple[FloatArray, FloatArray]:

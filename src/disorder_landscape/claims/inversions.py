@@ -12,12 +12,12 @@ from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.table import markdown
 from disorder_landscape.inference.inversion import CONVERGED
 from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.studies.inversions import wrong
 
 INVERSIONS = REPOSITORY / "claims" / "inversions.csv"
 UNIQUENESS = REPOSITORY / "claims" / "uniqueness.csv"
-WRONG = 0.005, 4.0
-"""An answer is wrong whose V is off by more than this in meV and by more than so many of its own
-deviations, root mean square over the sites."""
+SHOWN = (0.01, 0.1)
+"""Noise of which the table of uniqueness has rows, in e²/h."""
 COVERAGE = (0.5, 0.8, 0.95)
 ACCURACY_COLUMNS = (
     "model, noise (e²/h)",
@@ -42,12 +42,6 @@ def coverage(table: pd.DataFrame) -> FloatArray:
     """Return which part of the truths the central intervals of COVERAGE hold."""
     z = abs(deviations(table))
     return np.array([(z < norm.ppf((1 + part) / 2)).mean() for part in COVERAGE])
-
-
-def wrong(table: pd.DataFrame) -> pd.Series:
-    """Return which answers are wrong."""
-    least, bars = WRONG
-    return (table["site_error"] > least) & (table["site_error"] > bars * table["spread"])
 
 
 def accuracy_table(path: Path = INVERSIONS) -> str:
@@ -82,14 +76,17 @@ def uniqueness_table(path: Path = UNIQUENESS) -> str:
     columns = ["components, noise (e²/h)"]
     columns += [f"{points}×{points}×{biases}" for points, biases in settings]
     rows = []
-    for (components, noise), some in table.groupby(["components", "noise"]):
+    shown = table[table["noise"].isin(SHOWN)]
+    for (components, noise), some in shown.groupby(["components", "noise"]):
         cells = [f"{components}, {noise:g}"]
         for points, biases in settings:
             at = some[(some["points"] == points) & (some["biases"] == biases)]
             unknowns = at["unknowns"].iloc[0] if len(at) else 0
             bar = 1e3 * at["spread"].median()
             cells.append(
-                f"{at['fixed'].median():.0f} of {unknowns}: {bar:.2g} µeV" if len(at) else ""
+                f"{at['fixed'].median():.0f} of {unknowns}: {bar:.{0 if bar >= 10 else 1}f} µeV"
+                if len(at)
+                else ""
             )
         rows.append(tuple(cells))
     return markdown(tuple(columns), rows)

@@ -24,12 +24,15 @@ NOT_DESCRIBED = "not described by the model"
 
 TOLERATED = 3.5
 """χ² of all data, or of one channel's, may lie this many of its own deviations above its mean."""
+WRONG_MISFIT = 0.001, 0.005
+"""What answers differ by that tell apart a wrong one from the right one in e²/h, root mean square. If
+the noise hides less than the first, an answer that fits is right; if it hides more than the second,
+a second attempt must agree. In between …"""
 EXPECTED = 2.0
-"""Below this an answer is right at once, if a wrong one would be further above; otherwise a second
-attempt must agree."""
-WRONG_MISFIT = 0.005
-"""What wrong answers differ by from the right one in e²/h at least, root mean square. Noise that
-hides as much calls for a second attempt, too."""
+"""… an answer is right at once if χ² is above its mean by less than so many deviations …"""
+PROMPT = 9
+"""… and the smoother has taken no more steps: most take from four to eight, and those that have lost
+their way more. Otherwise a second attempt must agree."""
 SAME_ANSWER = 3.0
 """Two optima are the same where their V are closer than this many of their own deviations."""
 
@@ -161,7 +164,7 @@ def best(attempts: list[Attempt]) -> Attempt:
 def verdict(observation: Observation, attempts: list[Attempt]) -> str:
     """Say what became of it.
 
-    An answer that explains the data has converged, if a wrong one could not, or another attempt
+    An answer that explains the data has converged, if a wrong one could not or another attempt
     agrees. Where none explains the data but attempts agree on one, it is the model that cannot;
     where they do not agree either, a better answer may have been missed.
     """
@@ -170,15 +173,16 @@ def verdict(observation: Observation, attempts: list[Attempt]) -> str:
         same_answer(observation, chosen, other) for other in attempts if other is not chosen
     )
     if chosen.fits:
-        at_once = chosen.excess < EXPECTED and tells_wrong_answers(observation)
-        return CONVERGED if agreed or at_once else NOT_CONVERGED
+        return CONVERGED if agreed or is_surely_right(observation, chosen) else NOT_CONVERGED
     return NOT_DESCRIBED if agreed else NOT_CONVERGED
 
 
-def tells_wrong_answers(observation: Observation) -> bool:
-    """Return whether the noise is too small for a wrong answer to fit."""
+def is_surely_right(observation: Observation, attempt: Attempt) -> bool:
+    """Return whether an answer that fits needs no second attempt."""
     hidden = TOLERATED * np.sqrt(2 / observation.data.size) * observation.variance.mean()
-    return bool(hidden < WRONG_MISFIT**2)
+    low, high = WRONG_MISFIT
+    as_expected = attempt.steps <= PROMPT and attempt.excess < EXPECTED
+    return bool(hidden < low**2 or (hidden < high**2 and as_expected))
 
 
 def same_answer(observation: Observation, one: Attempt, other: Attempt) -> bool:

@@ -84,12 +84,13 @@ def _components(panel: Any, result: xr.Dataset) -> None:
 
 def _misfit(panel: Any, result: xr.Dataset) -> None:
     position = np.arange(len(CONDUCTANCES))
-    panel.bar(position, result["misfit"], 0.6, color="C0", label="misfit")
+    panel.bar(position, result["misfit"], 0.6, color="C0", alpha=0.5, label="misfit")
     panel.plot(position, result.attrs["noise"], "k_", ms=18, label="stated noise")
     names = [rf"$G_\mathrm{{{name[2:]}}}$" for name in CONDUCTANCES]
     panel.set_xticks(position, names)
-    panel.set(ylabel="root mean square [$e^2/h$]", ylim=(0, None))
-    panel.legend(frameon=False)
+    largest = max(result["misfit"].max(), np.max(result.attrs["noise"]))
+    panel.set(ylabel="root mean square [$e^2/h$]", ylim=(0, 1.4 * largest or None))
+    panel.legend(frameon=False, ncols=2, loc="upper center")
 
 
 def _conductances(

@@ -7,6 +7,7 @@ table.
 
 from __future__ import annotations
 
+import hashlib
 import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -18,7 +19,8 @@ import pandas as pd
 
 from disorder_landscape.chain import shipped_model
 from disorder_landscape.dataset.realizations import realization
-from disorder_landscape.files import replacing
+from disorder_landscape.dataset.store import provenance
+from disorder_landscape.files import replacing, write_json
 from disorder_landscape.inference.inversion import best, invert, verdict
 from disorder_landscape.inference.measurement import Measurement
 from disorder_landscape.inference.observation import Observation, noise_of_channels
@@ -28,6 +30,9 @@ from disorder_landscape.physics.parameters import FloatArray
 
 SEED = 2026
 """Of the fresh wires; the datasets' is 0."""
+WRONG = 0.005, 4.0
+"""An answer is wrong whose V is off by more than this in meV and by more than so many of its own
+deviations, root mean square over the sites."""
 KEYS = ["model", "noise", "index"]
 
 
@@ -111,15 +116,24 @@ def inversion_row(task: Task) -> dict[str, object]:
     return {**row, "deviations": " ".join(f"{one:.3f}" for one in z)}
 
 
+def wrong(table: pd.DataFrame) -> pd.Series:
+    """Return which answers are wrong."""
+    least, bars = WRONG
+    return (table["site_error"] > least) & (table["site_error"] > bars * table["spread"])
+
+
 def read_rows(path: Path) -> pd.DataFrame:
     """Return the table; empty if there is none."""
     return pd.read_csv(path) if path.exists() else pd.DataFrame(columns=KEYS)
 
 
-def write_rows(table: pd.DataFrame, path: Path) -> None:
-    """Write the table, sorted."""
+def write_rows(table: pd.DataFrame, path: Path, keys: list[str], command: str) -> None:
+    """Write a table, sorted, and beside it what made it (JSON, with the table's checksum)."""
+    content = table.sort_values(keys).to_csv(index=False).encode()
     with replacing(path) as temporary:
-        table.sort_values(KEYS).to_csv(temporary, index=False)
+        temporary.write_bytes(content)
+    made = {**provenance(command), "sha256": hashlib.sha256(content).hexdigest()}
+    write_json(path.with_suffix(".json"), {"provenance": made})
 
 
 def missing(tasks: Sequence[Task], table: pd.DataFrame) -> Iterable[Task]:
