@@ -25,14 +25,14 @@ NOT_DESCRIBED = "not described by the model"
 TOLERATED = 3.5
 """χ² of all data, or of one channel's, may lie this many of its own deviations above its mean."""
 WRONG_MISFIT = 0.001, 0.005
-"""What answers differ by that tell apart a wrong one from the right one in e²/h, root mean square. If
-the noise hides less than the first, an answer that fits is right; if it hides more than the second,
-a second attempt must agree. In between …"""
+"""Differences in e²/h, root mean square, that tell a wrong answer from the right one. If the noise
+hides less than the first, an answer that fits is right; if it hides more than the second, a second
+attempt must agree. In between …"""
 EXPECTED = 2.0
 """… an answer is right at once if χ² is above its mean by less than so many deviations …"""
 PROMPT = 9
-"""… and the smoother has taken no more steps: most take from four to eight, and those that have lost
-their way more. Otherwise a second attempt must agree."""
+"""… and the smoother has taken no more steps: most take from four to eight, and those that have
+lost their way more. Otherwise a second attempt must agree."""
 SAME_ANSWER = 3.0
 """Two optima are the same where their V are closer than this many of their own deviations."""
 
