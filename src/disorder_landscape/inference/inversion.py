@@ -80,7 +80,7 @@ def invert(
     told: Told = lambda attempt, number, step: None,
     checkpoint: Checkpoint | None = None,
 ) -> list[Attempt]:
-    """Return the attempts at explaining the data, the last or the best of which is the answer.
+    """Return the attempts at explaining the data, the `best` of which is the answer.
 
     Parameters
     ----------
@@ -97,13 +97,15 @@ def invert(
     recall = (checkpoint if checkpoint is not None else Checkpoint()).recall
     settings = settings if settings is not None else InversionSettings()
     attempts: list[Attempt] = []
-    prior = guess = observation.unknowns.prior
+    prior, guess = observation.unknowns.prior, None
     if model is not None:
         rng = np.random.default_rng([seed, 2**31])
         make = partial(network_guess, model, observation, rng)
         guess = _recalled(recall, "guess", make)
     for number, wider in enumerate(settings.wider):
-        start = prior if wider is None else Gaussian(guess.mean, wider**2 * guess.covariance)
+        start = prior
+        if guess is not None and wider is not None:
+            start = Gaussian(guess.mean, wider**2 * guess.covariance)
         smoother = _with_more_members(settings, number)
         step, steps = None, 0
         for step in smooth(observation, start, [seed, number], smoother, recall):
@@ -115,7 +117,7 @@ def invert(
             make = partial(polish, observation, answer)
             answer = _recalled(recall, f"polish.{number}", make)
         attempts.append(_attempt(observation, answer, steps))
-        if verdict(observation, attempts) == CONVERGED:
+        if verdict(observation, attempts) != NOT_CONVERGED:
             break
     return attempts
 

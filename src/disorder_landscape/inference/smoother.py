@@ -30,7 +30,7 @@ Recall = Callable[[str, Callable[[], dict[str, Any]]], dict[str, Any]]
 
 @dataclass(frozen=True)
 class SmootherSettings:
-    """How the smoother goes about it; each value was compared with others (README, Inversion)."""
+    """How the smoother goes about it."""
 
     members_per_unknown: float = 4.0
     """Wires that are simulated in each step, for each unknown."""

@@ -1,0 +1,115 @@
+"""Whether the error bars of the inversions mean what they say: simulation-based calibration.
+
+If they do, the truth's quantiles in the answers are uniform over [0, 1] (Talts et al.,
+arXiv:1804.06788; Säilynoja, Bürkner and Vehtari, Stat. Comput. 32, 32 (2022)). For
+some wires the answer is compared with a Markov chain of the exact posterior, too.
+Reads inversions.csv; writes calibration.json and calibration.png.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from scipy.stats import kstest, norm, uniform
+from tqdm import tqdm
+
+from disorder_landscape.chain import MODELS, shipped_model
+from disorder_landscape.claims.inversions import COVERAGE, INVERSIONS, coverage, deviations
+from disorder_landscape.dataset.store import provenance
+from disorder_landscape.files import replacing, write_json
+from disorder_landscape.inference.inversion import best, invert
+from disorder_landscape.inference.posterior import independence_chain
+from disorder_landscape.learning.model import load_model
+from disorder_landscape.studies.inversions import Task, fresh_wire
+
+NOISE = 0.01
+"""Of the wires for which there is a chain, in e²/h."""
+LENGTH = 256
+"""Of the chains."""
+
+
+def calibration(table: pd.DataFrame) -> dict[str, object]:
+    """Return coverage, and the p-value that the quantiles are uniform, for each model and noise."""
+    found: dict[str, object] = {}
+    for (model, noise), some in table[table["noise"] > 0].groupby(["model", "noise"]):
+        inside = dict(zip(map(str, COVERAGE), coverage(some).round(4).tolist(), strict=True))
+        p = float(kstest(norm.cdf(deviations(some)), "uniform").pvalue)
+        found[f"{model}, {noise:g}"] = {"wires": len(some), "p": round(p, 4), "inside": inside}
+    return found
+
+
+def chains(model: str, wires: int) -> list[dict[str, float]]:
+    """Compare answers with chains: proposals accepted, means apart and ratios of deviations."""
+    network, rows = load_model(shipped_model(model)), []
+    for index in tqdm(range(wires), unit=" chains", desc=model):
+        observation, _ = fresh_wire(Task(model, NOISE, index))
+        answer = best(invert(observation, network, seed=index)).answer
+        chain = independence_chain(observation, answer, LENGTH, np.random.default_rng(index))
+        scale = np.sqrt(np.diag(answer.covariance))
+        rows.append(
+            {
+                "acceptance": round(chain.acceptance, 3),
+                "apart_in_deviations": round(
+                    float((abs(chain.members.mean(0) - answer.mean) / scale).max()), 3
+                ),
+                "ratio_of_deviations": round(float((chain.members.std(0) / scale).mean()), 3),
+            }
+        )
+    return rows
+
+
+def draw(table: pd.DataFrame, path: Path) -> None:
+    """Draw how far the quantiles' distribution is from uniform, with ArviZ's 95 % bands."""
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", FutureWarning)  # of ArviZ, about its next version
+        import arviz as az
+    from matplotlib import pyplot as plt
+
+    groups = list(table[table["noise"] > 0].groupby(["model", "noise"]))
+    figure, panels = plt.subplots(
+        1, len(groups), figsize=(7.06, 2.2), sharey=True, layout="constrained", squeeze=False
+    )
+    for panel, ((model, noise), some) in zip(panels[0], groups, strict=True):
+        quantiles = norm.cdf(deviations(some))
+        az.plot_ecdf(
+            quantiles, cdf=uniform.cdf, difference=True, confidence_bands="auto", ci_prob=0.95,
+            ax=panel, eval_points=np.linspace(0, 1, 101),
+        )  # fmt: skip
+        panel.set_title(f"{str(model).split('_')[0]} components, {noise:g} $e^2/h$", fontsize=8)
+        panel.set_xlabel("quantile of the truth", fontsize=8)
+    panels[0][0].set_ylabel("ECDF − uniform", fontsize=8)
+    with replacing(path) as temporary:
+        figure.savefig(temporary, dpi=200)
+
+
+def main() -> None:
+    """Calculate, draw and write."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    folder = Path(__file__).resolve().parent
+    parser.add_argument("-o", "--output", type=Path, default=folder / "calibration.json")
+    parser.add_argument("--chains", type=int, default=10, help="wires with a chain, per model")
+    arguments = parser.parse_args()
+
+    table = pd.read_csv(INVERSIONS)
+    draw(table, arguments.output.with_suffix(".png"))
+    made = {
+        **provenance("python claims/calibration.py"),
+        "inversions": hashlib.sha256(INVERSIONS.read_bytes()).hexdigest(),
+    }
+    result = {"provenance": made, "calibration": calibration(table)}
+    result["chains"] = {model: chains(model, arguments.chains) for model in MODELS}
+    write_json(arguments.output, result)
+
+
+if __name__ == "__main__":
+    main()
