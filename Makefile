@@ -70,9 +70,11 @@ accuracy: $(READY) ## compare 2000 thermal averages with the integral by brute f
 study: $(READY) ## carry out the study STUDY of configs/studies, its table into claims (hours)
 	$(LANDSCAPE) study configs/studies/$(STUDY).toml
 
-inversion-study: $(READY) ## invert 200 fresh wires at each noise, tables into claims (hours; it goes on where it was)
+inversion-study: $(READY) ## invert fresh wires, judge errors and error bars, tables into claims (hours; it goes on)
 	$(VENV_PYTHON) claims/inversion.py
 	$(VENV_PYTHON) claims/uniqueness.py
+	$(VENV_PYTHON) claims/smoothers.py
+	$(VENV_PYTHON) claims/calibration.py
 
 # ONLY=id measures one claim; STORE=1 keeps what has been measured as the value that is stored.
 claims: $(READY) ## check the paper's claims: measure again what is quick, table into build/claims.md

@@ -226,12 +226,16 @@ def infer(
     model: Annotated[Path, typer.Option(help="Folder of a trained model.")],
     output: Annotated[Path, typer.Option("--output", "-o", help="netCDF file.")],
     noise: Annotated[
-        str, typer.Option(help="Error of the measured G in e^2/h: one number, or LL,RR,LR,RL.")
-    ] = "0.001",
+        str | None,
+        typer.Option(
+            help="Error of the measured G in e^2/h, 0 to 1: one number, or LL,RR,LR,RL. By default "
+            "the file's attribute noise, or 0.001."
+        ),
+    ] = None,
     from_prior: Annotated[
         bool, typer.Option("--from-prior", help="Without the network's guess, on any grid.")
     ] = False,
-    members: Annotated[int, typer.Option(help="Members of the posterior that are written.")] = 64,
+    members: Annotated[int, typer.Option(help="Members that are written, an even number.")] = 64,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the ensembles.")] = 0,
     plot: Annotated[Path | None, typer.Option(help="Picture of the result.")] = None,
 ) -> None:
@@ -260,7 +264,7 @@ def infer(
         check_plot(plot)
         check_writable("plot", plot)
     measured = read_dataset(measurement)
-    errors = parse_noise(noise)
+    errors = parse_noise(noise if noise is not None else str(measured.attrs.get("noise", 0.001)))
     unfinished = output.with_name(f"{output.name}.unfinished.json")
     with resumable(), inference_progress() as told:
         result = find(

@@ -154,6 +154,13 @@ def test_the_seed_decides(measured, inferred):
             "in e²/h, which is 3.874e-05 S, .* as if they were in siemens",
         ),
         (lambda G: G.assign(G_LL=G["G_LL"].assign_attrs(units="S")), {}, "units of G_LL are S"),
+        (lambda G: G.assign(G_LL=G["G_LL"].assign_attrs(units="mA/V")), {}, "of G_LL are mA/V"),
+        (lambda G: G * 38.74, {}, "more than one subband can carry"),
+        (
+            lambda G: G.assign_coords(mu=G["mu"].assign_attrs(units="eV")),
+            {},
+            "mu must be in meV, but its units are eV",
+        ),
         (lambda G: G * np.nan, {}, "hold finite numbers, but it holds none"),
         (lambda G: G / 0.0, {}, "hold finite numbers"),
         (lambda G: G.isel(mu=0), {}, "its dims are B, bias"),

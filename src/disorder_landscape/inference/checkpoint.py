@@ -9,6 +9,8 @@ from typing import Any
 
 from disorder_landscape.files import read_json, write_json
 
+_MUST = "be the file of an interrupted inversion (delete it to start anew)"
+
 
 class Checkpoint:
     """Results by name, each of which is calculated once, however often the run is interrupted.
@@ -26,7 +28,7 @@ class Checkpoint:
         self._run = hashlib.sha256(fingerprint).hexdigest()
         self._known: dict[str, Any] = {}
         if path is not None and path.exists():
-            content = read_json(path, "checkpoint", "be the file of an interrupted inversion")
+            content = read_json(path, "checkpoint", _MUST)
             if content.get("run") == self._run:
                 self._known = dict(content["results"])
 

@@ -17,7 +17,11 @@ from disorder_landscape.physics.parameters import FloatArray
 AXES = ("mu", "B", "bias")
 QUANTUM = e**2 / h
 """e²/h in S."""
-SIEMENS = ("S", "siemens", "Siemens", "A/V", "uS", "µS", "μS", "nS")
+SIEMENS = ("S", "siemens", "A/V")
+LARGEST = 10.0
+"""In e²/h: no conductance of a wire with one subband is above 4."""
+AXIS_UNITS = {"mu": ("meV",), "B": ("T", "tesla"), "bias": ("meV", "mV")}
+"""What axes may be in, where they say so."""
 IN_QUANTA = f"be in e²/h, which is {QUANTUM:.4g} S, by which conductances in S are divided"
 SETTINGS = ("theta", "barrier", "temperature")
 """Attributes that a measurement must have: in radians, in meV (left, right), in K."""
@@ -78,9 +82,9 @@ def measurement_of(
     require(not missing, "measurement", states, f"it lacks {', '.join(missing)}")
     return Measurement(
         G=_checked_conductances(dataset, given, complete),
-        mu=grid_in("mu", dataset["mu"].to_numpy(), -1e3, 1e3, "meV"),
-        B=grid_in("B", dataset["B"].to_numpy(), -100.0, 100.0, "T"),
-        bias=grid_in("bias", dataset["bias"].to_numpy(), -1e3, 1e3, "meV"),
+        mu=_axis(dataset, "mu", 1e3),
+        B=_axis(dataset, "B", 100.0),
+        bias=_axis(dataset, "bias", 1e3),
         theta=number_in("theta", settings["theta"], -FULL_TURN, FULL_TURN, "radians"),
         barrier=_two_barriers(settings["barrier"]),
         temperature=number_in("temperature", settings["temperature"], 0.0, 10.0, "K"),
@@ -98,13 +102,24 @@ def _checked_conductances(dataset: xr.Dataset, given: list[str], complete: bool)
         require(finite, "measurement", "hold finite numbers", "it holds something else")
         G[..., CONDUCTANCES.index(name)] = values
         unit = str(dataset[name].attrs.get("units", ""))
-        require(unit not in SIEMENS, "measurement", IN_QUANTA, f"the units of {name} are {unit}")
+        require(
+            not unit.endswith(SIEMENS), "measurement", IN_QUANTA, f"the units of {name} are {unit}"
+        )
     measured = abs(G[np.isfinite(G)])
     require(measured.size > 0, "measurement", "hold finite numbers", "it holds none")
     largest = measured.max()
     but = f"none is larger than {largest:.3g}, as if they were in siemens"
     require(not 0 < largest < 2 * QUANTUM, "measurement", IN_QUANTA, but)
+    but = f"one is {largest:.3g}, more than one subband can carry"
+    require(largest < LARGEST, "measurement", IN_QUANTA, but)
     return G
+
+
+def _axis(dataset: xr.Dataset, name: str, largest: float) -> FloatArray:
+    units = AXIS_UNITS[name]
+    unit = str(dataset[name].attrs.get("units", units[0]))
+    require(unit in units, name, f"be in {units[0]}", f"its units are {unit}")
+    return grid_in(name, dataset[name].to_numpy(), -largest, largest, units[0])
 
 
 def _two_barriers(stated: object) -> tuple[float, float]:

@@ -17,7 +17,7 @@ USUAL_STEPS = 7
 @contextmanager
 def inference_progress() -> Iterator[Told]:
     """Give a progress bar of one inversion, to be told of every step."""
-    with tqdm(total=USUAL_STEPS, unit=" steps", desc="infer") as bar:
+    with tqdm(total=USUAL_STEPS, unit=" steps", desc="infer", delay=1) as bar:
 
         def told(attempt: int, number: int, step: Step) -> None:
             most = attempt * USUAL_STEPS + max(USUAL_STEPS, number + 2)
