@@ -98,6 +98,7 @@ def main() -> None:
     folder = Path(__file__).resolve().parent
     parser.add_argument("-o", "--output", type=Path, default=folder / "calibration.json")
     parser.add_argument("--chains", type=int, default=10, help="wires with a chain, per model")
+    parser.add_argument("--models", nargs="*", choices=MODELS, default=list(MODELS))
     arguments = parser.parse_args()
 
     table = pd.read_csv(INVERSIONS)
@@ -107,7 +108,7 @@ def main() -> None:
         "inversions": hashlib.sha256(INVERSIONS.read_bytes()).hexdigest(),
     }
     result = {"provenance": made, "calibration": calibration(table)}
-    result["chains"] = {model: chains(model, arguments.chains) for model in MODELS}
+    result["chains"] = {model: chains(model, arguments.chains) for model in arguments.models}
     write_json(arguments.output, result)
 
 
