@@ -7,9 +7,6 @@ on. Example: python claims/inversion.py --noise 0 0.01 --wires 50
 from __future__ import annotations
 
 import argparse
-import os
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from multiprocessing import get_context
 from pathlib import Path
 
 import pandas as pd
@@ -17,25 +14,12 @@ from tqdm import tqdm
 
 from disorder_landscape.chain import MODELS
 from disorder_landscape.physics.compilation import compile_kernels
-from disorder_landscape.studies.inversions import (
-    KEYS,
-    Task,
-    inversion_row,
-    missing,
-    read_rows,
-    write_rows,
-)
+from disorder_landscape.studies.inversions import KEYS, Task, inversion_row
 from disorder_landscape.studies.noise import NOISE
+from disorder_landscape.studies.rows import missing, read_rows, write_rows
+from disorder_landscape.workers import each_result
 
 COMMAND = "python claims/inversion.py"
-
-
-def one_thread() -> None:
-    """Keep a worker to one thread."""
-    import numba
-
-    numba.set_num_threads(1)
-    os.environ.update(TF_NUM_INTRAOP_THREADS="1", TF_NUM_INTEROP_THREADS="1")
 
 
 def main() -> None:
@@ -57,15 +41,12 @@ def main() -> None:
         for noise in arguments.noise
         for model in arguments.models
     ]
-    table = read_rows(arguments.output)
-    left = missing(tasks, table)
+    table = read_rows(arguments.output, KEYS)
+    left = missing(tasks, table, KEYS)
     compile_kernels()
-    with (
-        ProcessPoolExecutor(arguments.workers, get_context("spawn"), one_thread) as pool,
-        tqdm(total=len(tasks), initial=len(tasks) - len(left), unit=" wires") as bar,
-    ):
-        for future in as_completed([pool.submit(inversion_row, task) for task in left]):
-            table = pd.concat([table, pd.DataFrame([future.result()])], ignore_index=True)
+    with tqdm(total=len(tasks), initial=len(tasks) - len(left), unit=" wires") as bar:
+        for row in each_result(inversion_row, left, arguments.workers):
+            table = pd.concat([table, pd.DataFrame([row])], ignore_index=True)
             write_rows(table, arguments.output, KEYS, COMMAND)
             bar.update()
     write_rows(table, arguments.output, KEYS, COMMAND)

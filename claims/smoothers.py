@@ -23,7 +23,8 @@ from disorder_landscape.inference.smoother import SmootherSettings, smooth
 from disorder_landscape.inference.unknowns import Gaussian
 from disorder_landscape.learning.model import TrainedModel, load_model
 from disorder_landscape.physics.parameters import FloatArray
-from disorder_landscape.studies.inversions import Task, fresh_wire, read_rows, write_rows
+from disorder_landscape.studies.inversions import Task, fresh_wire
+from disorder_landscape.studies.rows import missing, read_rows, write_rows
 
 MEMBERS, STEPS, RATIO = 160, 8, 2.0
 TRUNCATION = 0.999
@@ -79,13 +80,12 @@ def main() -> None:
     parser.add_argument("--wires", type=int, default=8)
     arguments = parser.parse_args()
 
-    table = read_rows(arguments.output)
-    there = set(table[KEYS].itertuples(index=False, name=None))
+    table = read_rows(arguments.output, KEYS)
     models = {name: load_model(shipped_model(name)) for name in MODELS}
     tasks = [Task(name, NOISE, index) for index in range(arguments.wires) for name in MODELS]
-    for task in tqdm([one for one in tasks if (one.model, one.index) not in there], unit=" wires"):
+    for task in tqdm(missing(tasks, table, KEYS), unit=" wires"):
         table = pd.concat([table, pd.DataFrame([row(models[task.model], task)])], ignore_index=True)
-        write_rows(table.drop(columns="noise", errors="ignore"), arguments.output, KEYS, COMMAND)
+        write_rows(table, arguments.output, KEYS, COMMAND)
 
 
 if __name__ == "__main__":

@@ -12,12 +12,13 @@ from pathlib import Path
 import pandas as pd
 from tqdm import tqdm
 
-from disorder_landscape.studies.inversions import write_rows
+from disorder_landscape.studies.rows import missing, read_rows, write_rows
 from disorder_landscape.studies.uniqueness import Setting, information_rows
 
 COMPONENTS = (5, 10, 15, 20, 30, 54)
 POINTS = (10, 20, 40)
 BIASES = (5, 21)
+KEYS = ["components", "points", "biases", "index"]
 COMMAND = "python claims/uniqueness.py"
 
 
@@ -32,19 +33,17 @@ def main() -> None:
     arguments = parser.parse_args()
 
     path = arguments.output
-    table = pd.read_csv(path) if path.exists() else pd.DataFrame()
-    keys = list(vars(Setting(1, 1, 1, 0)))
-    there = set(table[keys].itertuples(index=False, name=None)) if len(table) else set()
-    for index, *setting in tqdm(
-        list(product(range(arguments.wires), POINTS, BIASES, COMPONENTS)), unit=" settings"
-    ):
-        points, biases, components = setting
-        one = Setting(components, points, biases, index)
-        if tuple(vars(one).values()) in there:
-            continue
+    table = read_rows(path, KEYS)
+    settings = [
+        Setting(components, points, biases, index)
+        for index, points, biases, components in product(
+            range(arguments.wires), POINTS, BIASES, COMPONENTS
+        )
+    ]
+    for one in tqdm(missing(settings, table, KEYS), unit=" settings"):
         table = pd.concat([table, pd.DataFrame(information_rows(one))], ignore_index=True)
-        write_rows(table.round({"spread": 7, "prior_spread": 7}), path, [*keys, "noise"], COMMAND)
-    write_rows(table, path, [*keys, "noise"], COMMAND)
+        write_rows(table.round({"spread": 7, "prior_spread": 7}), path, [*KEYS, "noise"], COMMAND)
+    write_rows(table, path, [*KEYS, "noise"], COMMAND)
 
 
 if __name__ == "__main__":

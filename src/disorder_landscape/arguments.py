@@ -41,6 +41,22 @@ def number_in(name: str, value: object, low: float, high: float, unit: str = "")
     return number
 
 
+def numbers_of(name: str, text: str, counts: tuple[int, ...], must: str) -> list[float]:
+    """Return the numbers that a text like "15,12" lists.
+
+    Raises
+    ------
+    ArgumentError
+        If it lists something else, or none of these counts of numbers.
+    """
+    try:
+        values = [float(part) for part in text.split(",")]
+    except ValueError:
+        values = []
+    require(len(values) in counts, name, must, f"it is '{text}'")
+    return values
+
+
 def grid_in(
     name: str, values: ArrayLike, low: float, high: float, unit: str
 ) -> NDArray[np.float64]:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from disorder_landscape.arguments import ArgumentError, require
+from disorder_landscape.arguments import ArgumentError, numbers_of, require
 from disorder_landscape.dataset.store import read_dataset
 from disorder_landscape.files import replacing
 from disorder_landscape.physics.labels import CONDUCTANCES, labelled
@@ -82,13 +82,8 @@ def parse_barrier(text: str) -> tuple[float, float]:
     ArgumentError
         If the text is something else.
     """
-    try:
-        values = [float(part) for part in text.split(",")]
-        left, right = values if len(values) > 1 else 2 * values
-    except ValueError:
-        must = "be a number in meV, or two like 15,12"
-        raise ArgumentError("barrier", must, f"it is '{text}'") from None
-    return left, right
+    values = numbers_of("barrier", text, (1, 2), "be a number in meV, or two like 15,12")
+    return values[0], values[-1]
 
 
 def simulate_wire(

@@ -16,7 +16,8 @@ from disorder_landscape.claims.inversions import (
     uniqueness_table,
 )
 from disorder_landscape.inference.inversion import CONVERGED, NOT_CONVERGED
-from disorder_landscape.studies.inversions import KEYS, Task, missing, read_rows, write_rows, wrong
+from disorder_landscape.studies.inversions import KEYS, Task, wrong
+from disorder_landscape.studies.rows import missing, read_rows, write_rows
 from disorder_landscape.studies.uniqueness import NOISE, Setting, information_rows
 
 
@@ -42,11 +43,11 @@ def test_what_is_there_is_not_done_again(tmp_path):
     tasks = [
         Task(model, noise, i) for i in range(3) for noise in (0.0, 0.01) for model in (FIVE, TEN)
     ]
-    assert missing(tasks, read_rows(path)) == tasks
+    assert missing(tasks, read_rows(path, KEYS), KEYS) == tasks
     write_rows(pd.DataFrame([row(2), row(0, model=TEN), row(0, noise=0.0)]), path, KEYS, "test")
-    table = read_rows(path)
+    table = read_rows(path, KEYS)
     assert list(table["index"]) == [0, 2, 0]  # sorted by model, noise and index
-    left = missing(tasks, table)
+    left = missing(tasks, table, KEYS)
     assert len(left) == len(tasks) - 3
     assert Task(FIVE, 0.01, 2) not in left
     made = json.loads(path.with_suffix(".json").read_text())["provenance"]

@@ -6,12 +6,9 @@ is a function of the configuration alone, so workers, order and restarts leave n
 
 from __future__ import annotations
 
-import os
-import signal
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
-from multiprocessing import get_context
+from functools import partial
 from pathlib import Path
 
 import h5py
@@ -22,6 +19,7 @@ from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
 from disorder_landscape.physics.compilation import compile_kernels
 from disorder_landscape.physics.labels import CONDUCTANCES
+from disorder_landscape.workers import each_result
 
 VARIABLES = (*CONDUCTANCES, "components", "alpha", "potential")
 Progress = Callable[[int], None]
@@ -139,23 +137,8 @@ def generate(
             progress(make_shard(config, folder, shard))
         return
     compile_kernels()  # here, where Ctrl-C is heard
-    with ProcessPoolExecutor(workers, get_context("spawn"), _one_thread) as pool:
-        futures = [pool.submit(make_shard, config, folder, shard) for shard in missing]
-        try:
-            for future in as_completed(futures):
-                progress(future.result())
-        except BaseException:
-            pool.shutdown(cancel_futures=True)
-            raise
-
-
-def _one_thread() -> None:
-    """Keep a worker to one thread, and leave Ctrl-C to the process that waits for it."""
-    import numba
-
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    numba.set_num_threads(1)
-    os.environ.update(OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1")
+    for realizations in each_result(partial(make_shard, config, folder), missing, workers):
+        progress(realizations)
 
 
 def read_shards(config: DatasetConfig, folder: Path, first: int = 0) -> xr.Dataset:

@@ -17,6 +17,12 @@ WIDENING = 1.2
 """Of the measured deviations, which are those of few wires."""
 
 
+def network_labels(model: TrainedModel, unknowns: Unknowns, G: FloatArray) -> FloatArray:
+    """Return the network's labels as unknowns, (member, unknown), for G (member, …, channel)."""
+    Y = model.predict_labels(G.astype(np.float32))
+    return unknowns.vector(dict(zip(model.labels.names, Y.T, strict=True)))
+
+
 def network_guess(
     model: TrainedModel, observation: Observation, rng: np.random.Generator
 ) -> Gaussian:
@@ -26,24 +32,18 @@ def network_guess(
     shown to the network. So the error is that of this network for such wires at this noise.
     """
     unknowns = observation.unknowns
-    guess = _labels(model, unknowns, observation.measurement.G[None])[0]
+    guess = network_labels(model, unknowns, observation.measurement.G[None])[0]
     error = _error_without_noise(model, unknowns)
     X = Gaussian(guess, LOCAL**2 * np.diag(error**2)).draw(
         rng, WIRES_PER_UNKNOWN * len(unknowns.names)
     )
     G = observation.conductances(X)
-    off = _labels(model, unknowns, G + observation.noise * rng.normal(size=G.shape)) - X
+    off = network_labels(model, unknowns, G + observation.noise * rng.normal(size=G.shape)) - X
     predicted = np.array([name in model.labels.names for name in unknowns.names])
     off[:, ~predicted] = 0.0
     least = np.where(predicted, error / 10, error)
     covariance = WIDENING**2 * np.cov(off.T) + np.diag(least**2)
     return Gaussian(guess - off.mean(axis=0), covariance)
-
-
-def _labels(model: TrainedModel, unknowns: Unknowns, G: FloatArray) -> FloatArray:
-    """Return the network's labels as unknowns, (member, unknown), for G (member, …, channel)."""
-    Y = model.predict_labels(G.astype(np.float32))
-    return unknowns.vector(dict(zip(model.labels.names, Y.T, strict=True)))
 
 
 def _error_without_noise(model: TrainedModel, unknowns: Unknowns) -> FloatArray:

@@ -18,7 +18,7 @@ from disorder_landscape.inference.inversion import (
     invert,
     verdict,
 )
-from disorder_landscape.inference.measurement import measurement_of
+from disorder_landscape.inference.measurement import measurement_of, settings_of
 from disorder_landscape.inference.observation import Observation, noise_of_channels
 from disorder_landscape.inference.unknowns import Unknowns
 from disorder_landscape.learning.model import (
@@ -28,7 +28,7 @@ from disorder_landscape.learning.model import (
     load_model_config,
 )
 from disorder_landscape.learning.scaling import NOISE_FLOOR
-from disorder_landscape.physics.labels import CONDUCTANCES, labelled
+from disorder_landscape.physics.labels import AXES, CONDUCTANCES, labelled
 from disorder_landscape.physics.parameters import FloatArray
 from disorder_landscape.physics.topology import topological_visibility
 
@@ -95,32 +95,28 @@ def infer(
     config = (
         model.config if isinstance(model, TrainedModel) else load_model_config(Path(model))
     ).dataset
-    usual = {
-        "theta": 0.0,
-        "barrier": (config.wire.barrier, config.wire.barrier),
-        "temperature": config.temperature,
-    }
-    measurement = measurement_of(G, usual, complete=False)
+    measurement = measurement_of(G, settings_of(config), complete=False)
     errors = noise_of_channels(noise)
     members = int(number_in("members", members, 2, 10_000))
     require(members % 2 == 0, "members", "be an even number", f"it is {members}")
     seed = int(number_in("seed", seed, 0, 2**31))
     whole = bool(np.isfinite(measurement.G).all())
+    trained = None
     if network and whole:
         check_grid(G, config, "measurement")
-        model = model if isinstance(model, TrainedModel) else load_model(model)
+        trained = model if isinstance(model, TrainedModel) else load_model(model)
     observation = Observation(measurement, Unknowns(config), errors)
-    start = "the network's guess" if network and whole else "the prior"
+    start = "the prior" if trained is None else "the network's guess"
     if network and not whole:
         start += ", because the network needs all conductances and some are missing"
     fingerprint = repr((config.hash, errors.tolist(), seed, settings, start, measurement))
     notes = Checkpoint(checkpoint, fingerprint.encode() + measurement.G.tobytes())
-    guesses = model if isinstance(model, TrainedModel) and network and whole else None
-    attempts = invert(observation, guesses, seed, settings, told, notes)
-    result = _result(observation, best(attempts), members, seed)
+    attempts = invert(observation, trained, seed, settings, told, notes)
+    chosen = best(attempts)
+    result = _result(observation, chosen, members, seed)
     result.attrs = {
         "verdict": verdict(observation, attempts),
-        "excess": best(attempts).excess,
+        "excess": chosen.excess,
         "attempts": len(attempts),
         "steps": sum(attempt.steps for attempt in attempts),
         "start": start,
@@ -152,7 +148,7 @@ def _result(observation: Observation, chosen: Attempt, members: int, seed: int) 
         "potential_mean": ("site", unknowns.potential(mean), {"units": "meV"}),
         "potential_deviation": ("site", _deviation(unknowns, chosen), {"units": "meV"}),
         "misfit": ("channel", np.nan_to_num(observation.misfit(chosen.data)), {"units": "e^2/h"}),
-        **{name: (("mu", "B", "bias"), G[..., c]) for c, name in enumerate(CONDUCTANCES)},
+        **{name: (AXES, G[..., c]) for c, name in enumerate(CONDUCTANCES)},
         "T_IV": (("lead", *grid), T_IV.isel(realization=0).to_numpy()),
         "P_topological": (grid, topological.to_numpy(), {"units": "1"}),
     }
@@ -161,7 +157,7 @@ def _result(observation: Observation, chosen: Attempt, members: int, seed: int) 
         "site": np.arange(unknowns.config.sites),
         "channel": list(CONDUCTANCES),
         "lead": ["L", "R"],
-        **{axis: getattr(m, axis) for axis in ("mu", "B", "bias")},
+        **{axis: getattr(m, axis) for axis in AXES},
         **dict(zip(grid, maps, strict=True)),
     }
     return labelled(xr.Dataset(data, coords=coords))

@@ -10,7 +10,7 @@ import numpy as np
 
 from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.first_guess import network_guess
-from disorder_landscape.inference.observation import Observation
+from disorder_landscape.inference.observation import Observation, squared_misfits
 from disorder_landscape.inference.polish import polish
 from disorder_landscape.inference.smoother import Recall, SmootherSettings, Step, smooth
 from disorder_landscape.inference.unknowns import Gaussian
@@ -128,10 +128,8 @@ def _recalled(recall: Recall, name: str, make: Callable[[], Gaussian]) -> Gaussi
 
 def _attempt(observation: Observation, answer: Gaussian, steps: int) -> Attempt:
     data = observation.simulate(answer.mean[None])[0]
-    off = answer.mean - observation.unknowns.prior.mean
-    of_prior = off @ np.linalg.solve(observation.unknowns.prior.covariance, off)
-    squares = (data - observation.data) ** 2 / observation.variance
-    objective = float(squares.sum() + of_prior)
+    squares = squared_misfits(observation, data)
+    objective = float(squares.sum() + observation.unknowns.prior.squared_distance(answer.mean))
     return Attempt(answer, data, objective, chi_square_excess(observation, squares), steps)
 
 
@@ -190,7 +188,6 @@ def is_surely_right(observation: Observation, attempt: Attempt) -> bool:
 def same_answer(observation: Observation, one: Attempt, other: Attempt) -> bool:
     """Return whether two attempts have ended in the same optimum."""
     unknowns = observation.unknowns
-    squares = (one.data - observation.data) ** 2 / observation.variance
-    scatter = np.sqrt(max(1.0, float(squares.mean())))
+    scatter = np.sqrt(max(1.0, float(squared_misfits(observation, one.data).mean())))
     near = SAME_ANSWER * scatter * unknowns.site_deviation(one.answer.covariance)
     return bool(unknowns.site_distance(other.answer.mean, one.answer.mean) < near)

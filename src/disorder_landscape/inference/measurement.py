@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from scipy.constants import e, h
 
 from disorder_landscape.arguments import ArgumentError, grid_in, number_in, require
+from disorder_landscape.config import DatasetConfig
 from disorder_landscape.physics.hamiltonian import FULL_TURN
-from disorder_landscape.physics.labels import CONDUCTANCES
+from disorder_landscape.physics.labels import AXES, CONDUCTANCES
 from disorder_landscape.physics.parameters import FloatArray
 
-AXES = ("mu", "B", "bias")
 QUANTUM = e**2 / h
 """e²/h in S."""
 SIEMENS = ("S", "siemens", "A/V")
@@ -42,6 +43,18 @@ class Measurement:
     """Left and right, in meV."""
     temperature: float
     """In K."""
+
+
+def settings_of(config: DatasetConfig) -> dict[str, Any]:
+    """Return the SETTINGS at which a dataset is simulated."""
+    barriers = (config.wire.barrier, config.wire.barrier)
+    return {"theta": 0.0, "barrier": barriers, "temperature": config.temperature}
+
+
+def empty_measurement(config: DatasetConfig) -> Measurement:
+    """Return a measurement on a dataset's grid and at its settings, all conductances zero."""
+    G = np.zeros((config.mu_points, config.B_points, len(config.bias), len(CONDUCTANCES)))
+    return Measurement(G, config.mu, config.B, np.array(config.bias), **settings_of(config))
 
 
 def measurement_of(

@@ -11,14 +11,13 @@ from numpy.typing import NDArray
 from disorder_landscape.arguments import number_in, require
 from disorder_landscape.inference.measurement import Measurement
 from disorder_landscape.inference.unknowns import Unknowns
+from disorder_landscape.physics.finite_temperature import TOLERANCE
 from disorder_landscape.physics.labels import CONDUCTANCES
 from disorder_landscape.physics.parameters import FloatArray
 from disorder_landscape.physics.transport import conductance
 
-SOLVER_ERROR = 1e-4
-"""In e²/h: what the simulation is exact to (`finite_temperature.TOLERANCE`), below which no noise
-can be told from none."""
-
+SOLVER_ERROR = TOLERANCE
+"""In e²/h: what the simulation is exact to, below which no noise can be told from none."""
 FEW = 7
 """Lines of a grid of which none is left out."""
 
@@ -93,6 +92,11 @@ class Observation:
         total = np.bincount(self.channel, squares, minlength=len(CONDUCTANCES))
         mean = np.divide(total, count, out=np.full(count.size, np.nan), where=count > 0)
         return np.asarray(np.sqrt(mean))
+
+
+def squared_misfits(observation: Observation, Y: FloatArray) -> FloatArray:
+    """Return those of simulated data (…, datum) in units of the errors' variance, same shape."""
+    return np.asarray((Y - observation.data) ** 2 / observation.variance)
 
 
 def noise_of_channels(noise: float | Mapping[str, float]) -> FloatArray:

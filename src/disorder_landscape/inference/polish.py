@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from disorder_landscape.inference.observation import Observation
+from disorder_landscape.inference.observation import Observation, squared_misfits
 from disorder_landscape.inference.unknowns import Gaussian, Unknowns
 from disorder_landscape.physics.parameters import FloatArray
 
@@ -43,8 +43,7 @@ def polish(observation: Observation, start: Gaussian, steps: int = STEPS) -> Gau
     precision = np.linalg.inv(prior.covariance)
 
     def objective(x: FloatArray, y: FloatArray) -> float:
-        off = x - prior.mean
-        return float(((observation.data - y) ** 2 / variance).sum() + off @ precision @ off)
+        return float(squared_misfits(observation, y).sum() + prior.squared_distance(x))
 
     x, (factor, first, largest) = start.mean, DAMPING
     y, slope = linearise(observation, start)

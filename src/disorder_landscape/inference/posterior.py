@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from disorder_landscape.inference.observation import Observation
+from disorder_landscape.inference.observation import Observation, squared_misfits
 from disorder_landscape.inference.unknowns import Gaussian
 from disorder_landscape.physics.parameters import FloatArray
 
@@ -49,8 +49,8 @@ def independence_chain(
     X = np.concatenate([answer.mean[None], X])
     blocks = np.array_split(X, max(1, len(X) // AT_A_TIME))
     Y = np.concatenate([observation.simulate(block) for block in blocks])
-    log_likelihood = -0.5 * ((Y - observation.data) ** 2 / observation.variance).sum(axis=1)
-    log_weight = log_likelihood + _log(prior, X) - _log(proposal, X)
+    likelihood = squared_misfits(observation, Y).sum(axis=1)
+    log_weight = -0.5 * (likelihood + prior.squared_distance(X) - proposal.squared_distance(X))
     present, taken = 0, 0
     chain = np.empty_like(X[1:])
     for i in range(1, len(X)):
@@ -58,10 +58,3 @@ def independence_chain(
             present, taken = i, taken + 1
         chain[i - 1] = X[present]
     return Chain(chain, taken / length)
-
-
-def _log(distribution: Gaussian, x: FloatArray) -> FloatArray:
-    """Return the logarithm of a density at x (…, unknown), up to a constant."""
-    off = x - distribution.mean
-    precision = np.linalg.inv(distribution.covariance)
-    return np.asarray(-0.5 * np.einsum("...i,ij,...j->...", off, precision, off))

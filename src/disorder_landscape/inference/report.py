@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from disorder_landscape.arguments import ArgumentError
+from disorder_landscape.arguments import numbers_of
 from disorder_landscape.physics.labels import CONDUCTANCES
 
 
@@ -17,16 +17,9 @@ def parse_noise(text: str) -> float | dict[str, float]:
     ArgumentError
         If the text is something else.
     """
-    try:
-        values = [float(part) for part in text.split(",")]
-    except ValueError:
-        values = []
-    if len(values) == 1:
-        return values[0]
-    if len(values) != len(CONDUCTANCES):
-        must = f"be a number in e²/h, or one for each of {', '.join(CONDUCTANCES)}"
-        raise ArgumentError("noise", must, f"it is '{text}'")
-    return dict(zip(CONDUCTANCES, values, strict=True))
+    must = f"be a number in e²/h, or one for each of {', '.join(CONDUCTANCES)}"
+    values = numbers_of("noise", text, (1, len(CONDUCTANCES)), must)
+    return values[0] if len(values) == 1 else dict(zip(CONDUCTANCES, values, strict=True))
 
 
 def summary(result: xr.Dataset) -> list[str]:

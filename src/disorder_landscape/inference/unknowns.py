@@ -15,6 +15,7 @@ import numpy as np
 
 from disorder_landscape.arguments import require
 from disorder_landscape.config import DatasetConfig
+from disorder_landscape.dataset.realizations import Realization
 from disorder_landscape.physics.disorder import component_covariance, potential_from_components
 from disorder_landscape.physics.parameters import PARAMETER_RANGES, FloatArray, Nanowire
 
@@ -25,6 +26,11 @@ class Gaussian:
 
     mean: FloatArray
     covariance: FloatArray
+
+    def squared_distance(self, x: FloatArray) -> FloatArray:
+        """Return Mahalanobis' distance of x (…, unknown) from the mean, squared, shape (…,)."""
+        off, precision = x - self.mean, np.linalg.inv(self.covariance)
+        return np.asarray(np.einsum("...i,ij,...j->...", off, precision, off))
 
     def draw(self, rng: np.random.Generator, members: int) -> FloatArray:
         """Return an even number of members, shape (member, unknown), in pairs about the mean."""
@@ -108,6 +114,12 @@ class Unknowns:
     def site_distance(self, x: FloatArray, other: FloatArray) -> float:
         """Return the root-mean-square difference of two potentials in meV."""
         return self.site_deviation(np.outer(x - other, x - other))
+
+    def of_realization(self, one: Realization) -> FloatArray:
+        """Return the unknowns of a realization, shape (unknown,)."""
+        values = {f"c_{n}": c for n, c in enumerate(one.components, start=1)}
+        values |= {"alpha": np.asarray(one.alpha)} if self.config.alpha_is_label else {}
+        return self.vector({**values, "mean": one.potential.mean()})
 
     def vector(self, values: dict[str, FloatArray]) -> FloatArray:
         """Return the vectors (…, unknown) of named values; what is missing is the prior's mean.

@@ -23,11 +23,11 @@ from disorder_landscape.files import read_json, replacing, write_json
 from disorder_landscape.learning.backend import import_keras
 from disorder_landscape.learning.mirror import mirrored_conductance, mirrored_labels
 from disorder_landscape.learning.scaling import (
-    AXES,
     ConductanceArray,
     InputScaler,
     LabelScaler,
 )
+from disorder_landscape.physics.labels import AXES
 from disorder_landscape.physics.parameters import FloatArray
 
 NETWORK, SCALER, CONFIG, METRICS = "network.keras", "scaler.json", "config.json", "metrics.json"

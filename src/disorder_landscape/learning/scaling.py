@@ -12,15 +12,13 @@ from numpy.typing import NDArray
 from sklearn.preprocessing import StandardScaler
 
 from disorder_landscape.arguments import require
-from disorder_landscape.physics.labels import CONDUCTANCES
+from disorder_landscape.physics.labels import AXES, CONDUCTANCES
 from disorder_landscape.physics.parameters import FloatArray
 
 ConductanceArray = NDArray[np.float32]
 
 CHANNELS = CONDUCTANCES
 """The network's input channels, in this order: the "4 different measurements" of S-II.2."""
-AXES = ("mu", "B", "bias")
-"""The measurement configurations K, in the order of the network's axes."""
 COMPRESSION: ConductanceArray = np.array([0.2, 0.2, 0.003, 0.003], dtype=np.float32)
 """Scale s in e²/h of asinh(G/s) per channel: typical local and nonlocal conductances."""
 NOISE_FLOOR = 0.001

@@ -6,6 +6,8 @@ import xarray as xr
 
 CONDUCTANCES = ("G_LL", "G_RR", "G_LR", "G_RL")
 """Order of the conductance matrix's elements wherever they share an axis."""
+AXES = ("mu", "B", "bias")
+"""Order of the axes over which they are measured, the configurations K."""
 LABELS = {
     "mu": ("chemical potential", "meV"),
     "B": ("magnetic field along the wire", "T"),

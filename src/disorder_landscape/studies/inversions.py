@@ -7,22 +7,18 @@ table.
 
 from __future__ import annotations
 
-import hashlib
 import time
-from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
 from disorder_landscape.chain import shipped_model
 from disorder_landscape.dataset.realizations import realization
-from disorder_landscape.dataset.store import provenance
-from disorder_landscape.files import replacing, write_json
+from disorder_landscape.inference.first_guess import network_labels
 from disorder_landscape.inference.inversion import best, invert, verdict
-from disorder_landscape.inference.measurement import Measurement
+from disorder_landscape.inference.measurement import empty_measurement
 from disorder_landscape.inference.observation import Observation, noise_of_channels
 from disorder_landscape.inference.unknowns import Unknowns
 from disorder_landscape.learning.model import TrainedModel, load_model
@@ -54,15 +50,8 @@ def fresh_wire(task: Task) -> tuple[Observation, FloatArray]:
     """Return a measurement of a fresh wire, with errors, and its true unknowns (unknown,)."""
     config = _model(task.model).config.dataset.model_copy(update={"seed": SEED})
     unknowns = Unknowns(config)
-    one = realization(config, task.index)
-    values = {f"c_{n}": c for n, c in enumerate(one.components, start=1)}
-    values |= {"alpha": one.alpha} if config.alpha_is_label else {}
-    truth = unknowns.vector({**values, "mean": one.potential.mean()})
-    barrier = (config.wire.barrier, config.wire.barrier)
-    empty = np.zeros((config.mu_points, config.B_points, len(config.bias), 4))
-    settings = Measurement(
-        empty, config.mu, config.B, np.array(config.bias), 0.0, barrier, config.temperature
-    )
+    truth = unknowns.of_realization(realization(config, task.index))
+    settings = empty_measurement(config)
     noise = noise_of_channels(task.noise)
     G = Observation(settings, unknowns, noise).conductances(truth[None])[0]
     rng = np.random.default_rng([SEED, task.index, 1])
@@ -88,9 +77,7 @@ def inversion_row(task: Task) -> dict[str, object]:
     seconds = time.perf_counter() - begun
     chosen = best(attempts)
     mean, covariance = chosen.answer.mean, chosen.answer.covariance
-    G = observation.measurement.G[None].astype(np.float32)
-    labels = network.labels.names
-    guess = unknowns.vector(dict(zip(labels, network.predict_labels(G).T, strict=True)))[0]
+    guess = network_labels(network, unknowns, observation.measurement.G[None])[0]
     papers = np.array([name != "mean" for name in unknowns.names])
     variance = np.diag(unknowns.prior.covariance)
     row: dict[str, object] = {
@@ -104,7 +91,7 @@ def inversion_row(task: Task) -> dict[str, object]:
         "scaled_error": ((mean - truth) ** 2 / variance)[papers].mean(),
         "network_alpha_error": abs(unknowns.alpha(guess) - unknowns.alpha(truth)),
         "alpha_error": abs(unknowns.alpha(mean) - unknowns.alpha(truth)),
-        "mahalanobis": (truth - mean) @ np.linalg.solve(covariance, truth - mean),
+        "mahalanobis": chosen.answer.squared_distance(truth),
         "excess": chosen.excess,
         "verdict": verdict(observation, attempts),
         "attempts": len(attempts),
@@ -120,23 +107,3 @@ def wrong(table: pd.DataFrame) -> pd.Series:
     """Return which answers are wrong."""
     least, bars = WRONG
     return (table["site_error"] > least) & (table["site_error"] > bars * table["spread"])
-
-
-def read_rows(path: Path) -> pd.DataFrame:
-    """Return the table; empty if there is none."""
-    return pd.read_csv(path) if path.exists() else pd.DataFrame(columns=KEYS)
-
-
-def write_rows(table: pd.DataFrame, path: Path, keys: list[str], command: str) -> None:
-    """Write a table, sorted, and beside it what made it (JSON, with the table's checksum)."""
-    content = table.sort_values(keys).to_csv(index=False).encode()
-    with replacing(path) as temporary:
-        temporary.write_bytes(content)
-    made = {**provenance(command), "sha256": hashlib.sha256(content).hexdigest()}
-    write_json(path.with_suffix(".json"), {"provenance": made})
-
-
-def missing(tasks: Sequence[Task], table: pd.DataFrame) -> Iterable[Task]:
-    """Return the tasks that the table has no row of."""
-    there = {(m, float(n), int(i)) for m, n, i in table[KEYS].itertuples(index=False)}
-    return [task for task in tasks if (task.model, task.noise, task.index) not in there]

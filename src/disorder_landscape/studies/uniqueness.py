@@ -15,7 +15,7 @@ import numpy as np
 
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset.realizations import realization
-from disorder_landscape.inference.measurement import Measurement
+from disorder_landscape.inference.measurement import empty_measurement
 from disorder_landscape.inference.observation import Observation, noise_of_channels
 from disorder_landscape.inference.polish import linearise
 from disorder_landscape.inference.unknowns import Gaussian, Unknowns
@@ -63,9 +63,7 @@ def information_rows(setting: Setting) -> list[dict[str, float]]:
     """
     config = setting.config
     unknowns = Unknowns(config)
-    one = realization(config, setting.index)
-    values = {f"c_{n}": c for n, c in enumerate(one.components, start=1)}
-    truth = unknowns.vector({**values, "mean": one.potential.mean()})
+    truth = unknowns.of_realization(realization(config, setting.index))
     slope = _slopes(unknowns, truth)
     prior = unknowns.prior.covariance
     root = np.linalg.cholesky(prior)
@@ -90,9 +88,5 @@ def information_rows(setting: Setting) -> list[dict[str, float]]:
 
 def _slopes(unknowns: Unknowns, truth: FloatArray) -> FloatArray:
     """Return the derivatives of all conductances (unknown, datum)."""
-    c = unknowns.config
-    barrier = (c.wire.barrier, c.wire.barrier)
-    G = np.zeros((c.mu_points, c.B_points, len(c.bias), 4))
-    measurement = Measurement(G, c.mu, c.B, np.array(c.bias), 0.0, barrier, c.temperature)
-    observation = Observation(measurement, unknowns, noise_of_channels(0.0))
+    observation = Observation(empty_measurement(unknowns.config), unknowns, noise_of_channels(0.0))
     return linearise(observation, Gaussian(truth, NARROW * np.eye(truth.size)))[1]

@@ -1,0 +1,35 @@
+"""Tables of studies that are no trainings: a row for each task, found again by its keys."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TypeVar
+
+import pandas as pd
+
+from disorder_landscape.dataset.store import provenance
+from disorder_landscape.files import replacing, write_json
+
+Task = TypeVar("Task")
+
+
+def read_rows(path: Path, keys: list[str]) -> pd.DataFrame:
+    """Return the table; empty if there is none."""
+    return pd.read_csv(path) if path.exists() else pd.DataFrame(columns=keys)
+
+
+def write_rows(table: pd.DataFrame, path: Path, keys: list[str], command: str) -> None:
+    """Write a table, sorted, and beside it what made it (JSON, with the table's checksum)."""
+    content = table.sort_values(keys).to_csv(index=False).encode()
+    with replacing(path) as temporary:
+        temporary.write_bytes(content)
+    made = {**provenance(command), "sha256": hashlib.sha256(content).hexdigest()}
+    write_json(path.with_suffix(".json"), {"provenance": made})
+
+
+def missing(tasks: Sequence[Task], table: pd.DataFrame, keys: list[str]) -> list[Task]:
+    """Return the tasks that the table has no row of; the keys are attributes of a task."""
+    there = set(table[keys].itertuples(index=False, name=None))
+    return [task for task in tasks if tuple(getattr(task, key) for key in keys) not in there]

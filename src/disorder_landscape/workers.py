@@ -1,0 +1,47 @@
+"""Many tasks over a few processes, one thread each."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from multiprocessing import get_context
+from typing import TypeVar
+
+Task = TypeVar("Task")
+Result = TypeVar("Result")
+THREADS = (
+    "OMP_NUM_THREADS",
+    "OPENBLAS_NUM_THREADS",
+    "MKL_NUM_THREADS",
+    "TF_NUM_INTRAOP_THREADS",
+    "TF_NUM_INTEROP_THREADS",
+)
+"""What tells libraries that are not imported yet how many threads they may have."""
+
+
+def each_result(
+    function: Callable[[Task], Result], tasks: Iterable[Task], workers: int
+) -> Iterator[Result]:
+    """Yield what a function returns for each task, as soon as it is there, in any order.
+
+    Whoever stops listening, or is interrupted, waits only for the tasks that are in hand.
+    """
+    with ProcessPoolExecutor(workers, get_context("spawn"), _start_worker) as pool:
+        futures = [pool.submit(function, task) for task in tasks]
+        try:
+            for future in as_completed(futures):
+                yield future.result()
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+
+
+def _start_worker() -> None:
+    """Keep a worker to one thread, and leave Ctrl-C to the process that waits for it."""
+    import numba
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    numba.set_num_threads(1)
+    os.environ.update(dict.fromkeys(THREADS, "1"))
