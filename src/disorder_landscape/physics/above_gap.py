@@ -3,7 +3,8 @@
 There √(Δ₀²−ω²) becomes −i sgn(ω)√(ω²−Δ₀²), the retarded branch, and M = ω − H − Σ(ω) is complex
 symmetric, with Im M ≥ γ√((|ω|−Δ₀)/(|ω|+Δ₀)). What comes in from a lead may leave through the
 parent, so the probabilities no longer sum to one and G_aa is N_e − R_ee + R_he itself. Below the
-gap the results are those of `fast_solver`, at some 14 times the cost.
+gap the results are those of `fast_solver`, at some 14 times the cost. A wire's dissipation, −iΓ on
+each site, absorbs in the same way at any energy.
 """
 
 from __future__ import annotations
@@ -28,11 +29,11 @@ GROWTH_LIMIT = 1e7
 def retarded_pairing_factors(
     wire: Nanowire, omega: FloatArray
 ) -> tuple[ComplexArray, ComplexArray]:
-    """Return γω/√(Δ₀²−ω²) and γΔ₀/√(Δ₀²−ω²) in meV for any ω ≠ ±Δ₀, on the retarded branch."""
+    """Return γω/√(Δ₀²−ω²) + iΓ and γΔ₀/√(Δ₀²−ω²) in meV, ω ≠ ±Δ₀, on the retarded branch."""
     root = np.sqrt(abs(wire.delta0**2 - omega**2)).astype(np.complex128)
     root[abs(omega) > wire.delta0] *= -1j
     root[omega < -wire.delta0] *= -1
-    return wire.gamma * omega / root, wire.gamma * wire.delta0 / root
+    return wire.gamma * omega / root + 1j * wire.dissipation, wire.gamma * wire.delta0 / root
 
 
 @nb.njit(cache=True)

@@ -105,9 +105,10 @@ def conductance_gradient(
     Raises
     ------
     ArgumentError
-        If the wire is not one, or a grid is empty, unsorted or out of range.
+        If the wire is not one or has dissipation, or a grid is empty, unsorted or out of range.
     """
     require(isinstance(wire, Nanowire), "wire", "be a Nanowire", f"it is {wire!r}")
+    require(wire.dissipation == 0, "wire", "have no dissipation for slopes", "it has")
     edge = wire.delta0 * (1 - 1e-6)
     grids = {
         "mu": grid_in("mu", mu, -1e3, 1e3, "meV"),

@@ -69,7 +69,8 @@ def onsite(
 ) -> ComplexArray:
     """Return the onsite terms of sites with the given potentials, shape (site, 4, 4), in meV."""
     kinetic = (2 * wire.hopping - mu + np.asarray(V))[:, None, None] * TAU_Z
-    return np.asarray(kinetic + zeeman(wire.zeeman_per_tesla * B, theta) + self_energy(wire, omega))
+    uniform = zeeman(wire.zeeman_per_tesla * B, theta) + self_energy(wire, omega)
+    return np.asarray(kinetic + uniform - 1j * wire.dissipation * np.eye(4))
 
 
 def hopping(wire: Nanowire) -> ComplexArray:

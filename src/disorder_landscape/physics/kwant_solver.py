@@ -67,7 +67,12 @@ def scattering_matrices(
             for i, chemical_potential in enumerate(mu):
                 uniform = h.onsite(wire, np.zeros(1), chemical_potential, field, energy, theta)[0]
                 params = {"B": field, "uniform": uniform}
-                yield (i, j, k), kwant.smatrix(ready, energy, params=params)
+                yield (
+                    (i, j, k),
+                    kwant.smatrix(
+                        ready, energy, params=params, check_hermiticity=wire.dissipation == 0
+                    ),
+                )
 
 
 def conductances(smatrix: Any) -> FloatArray:

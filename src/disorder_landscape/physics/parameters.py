@@ -62,6 +62,9 @@ class Nanowire:
         Chemical potential of the leads in meV, a convention of the group's published codes.
     lead_alpha, lead_g : float or None
         Spin–orbit coupling and g-factor of the leads; None takes the wire's.
+    dissipation : float
+        Γ ≥ 0 in meV: −iΓ on each site broadens the levels, as if each leaked into a bath that
+        takes no part in transport. The paper's wires have none.
 
     Raises
     ------
@@ -80,6 +83,7 @@ class Nanowire:
     lead_mu: float = 25.0
     lead_alpha: float | None = None
     lead_g: float | None = None
+    dissipation: float = 0.0
 
     def __post_init__(self) -> None:
         checked: dict[str, object] = {"potential": checked_potential(self.potential)}
@@ -148,6 +152,7 @@ PARAMETER_RANGES = {
     "lead_mu": (-1e3, 1e3, "meV"),
     "lead_alpha": (0.0, 100.0, "meV nm"),
     "lead_g": (0.0, 100.0, ""),
+    "dissipation": (0.0, 10.0, "meV"),
 }
 """Range and unit within which each parameter of a wire is accepted."""
 

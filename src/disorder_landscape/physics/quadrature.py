@@ -123,7 +123,7 @@ class _BareConductance:
             arguments = [self.wire], self.mu, self.B, omega, self.theta
             return np.asarray(tilted_field.bare_conductance(*arguments)[0, 0, 0])
         G0 = np.empty((omega.size, 2, 4))
-        below = omega < self.wire.delta0
+        below = (omega < self.wire.delta0) & (self.wire.dissipation == 0)
         for solver, some in ((fast_solver, below), (above_gap, ~below)):
             if some.any():
                 found = solver.bare_conductance([self.wire], self.mu, self.B, omega[some])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
+from typing import Any
 
 from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.physics.parameters import FloatArray, Nanowire
@@ -12,10 +13,13 @@ BareConductance = Callable[[Sequence[Nanowire], FloatArray, FloatArray, FloatArr
 Determinant = Callable[[Sequence[Nanowire], FloatArray, FloatArray], FloatArray]
 
 
-def solver_functions(name: str, theta: float = 0.0) -> tuple[BareConductance, Determinant]:
+def solver_functions(
+    name: str, theta: float = 0.0, dissipative: bool = False
+) -> tuple[BareConductance, Determinant]:
     """Return `bare_conductance` and `reflection_determinant` of "fast" or "kwant" at the angle θ.
 
-    Each is imported only when it is asked for: Kwant's import takes a second, Numba's two.
+    The determinant is that of wires without dissipation. Each is imported only when it is asked
+    for: Kwant's import takes a second, Numba's two.
     """
     if name == "fast" and theta != 0:
         from disorder_landscape.physics import tilted_field
@@ -25,9 +29,10 @@ def solver_functions(name: str, theta: float = 0.0) -> tuple[BareConductance, De
             partial(tilted_field.reflection_determinant, theta=theta),
         )
     if name == "fast":
-        from disorder_landscape.physics import fast_solver
+        from disorder_landscape.physics import above_gap, fast_solver
 
-        return fast_solver.bare_conductance, fast_solver.reflection_determinant
+        bare: Any = above_gap if dissipative else fast_solver
+        return bare.bare_conductance, fast_solver.reflection_determinant
     if name == "kwant":
         from disorder_landscape.physics import kwant_solver
 

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from disorder_landscape.arguments import grid_in, number_in
+from disorder_landscape.arguments import grid_in, number_in, require
 from disorder_landscape.physics.hamiltonian import FULL_TURN
 from disorder_landscape.physics.labels import labelled
 from disorder_landscape.physics.parameters import FloatArray, Nanowire
@@ -50,6 +50,9 @@ def topological_visibility(
     """
     wires = wires_of(wire)
     grids = {"mu": grid_in("mu", mu, -1e3, 1e3, "meV"), "B": grid_in("B", B, -100.0, 100.0, "T")}
+    without = all(w.dissipation == 0 for w in wires)
+    must = "have no dissipation for T_IV"
+    require(without, "wire", must, "it has, and nothing is reflected in full")
     if not barrier:
         wires = [replace(w, barrier=(0.0, 0.0)) for w in wires]
     theta = number_in("theta", theta, -FULL_TURN, FULL_TURN, "radians")

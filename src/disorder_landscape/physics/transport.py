@@ -84,7 +84,8 @@ def conductance(
     }
     temperature = number_in("temperature", temperature, 0.0, 10.0, "K")
     theta = number_in("theta", theta, -FULL_TURN, FULL_TURN, "radians")
-    bare = solver_functions(solver, theta)[0]
+    dissipative = any(w.dissipation > 0 for w in wires)
+    bare = solver_functions(solver, theta, dissipative)[0]
     route = "tilted" if solver == "fast" and theta != 0 else solver
     shape = (len(wires), grids["mu"].size, grids["B"].size)
     told = progress if progress is not None else lambda done, total: None
@@ -139,7 +140,8 @@ def exact_average(
 
     Rational in energy and in closed form where the thermal window stays below the gap
     (`finite_temperature`, `tilted_average`); by adaptive quadrature (`quadrature`) where it does
-    not, and for the rare set of which no rational model within the tolerance is found.
+    not or the wire has dissipation, and for the rare set of which no rational model within the
+    tolerance is found.
 
     Returns
     -------
@@ -148,7 +150,8 @@ def exact_average(
     error, energies : array, shape (wire, mu, B)
     """
     window = abs(bias).max() + REACH * BOLTZMANN * temperature
-    if window > BELOW_GAP * min(w.delta0 for w in wires):
+    dissipative = any(w.dissipation > 0 for w in wires)
+    if dissipative or window > BELOW_GAP * min(w.delta0 for w in wires):
         return thermal_quadrature(wires, mu, B, bias, temperature, theta=theta)
     if theta == 0:
         G, error, energies = thermal_conductance(wires, mu, B, bias, temperature)
