@@ -1,8 +1,8 @@
 """Make the shipped models and test sets from their runs, and SHA256SUMS of all data.
 
-Run from the repository's root, once the runs are evaluated (`make evaluate PRESET=full` and
-`make evaluate PRESET=full_ten_components`): python data_small/make_shipped.py. Names of models in
-data_small/models make these only.
+Run from the repository's root, once the runs are evaluated (`make evaluate PRESET=full`,
+PRESET=full_ten_components, PRESET=noisy and PRESET=noisy_ten_components):
+python data_small/make_shipped.py. Names of presets, full or noisy, make theirs only.
 """
 
 import hashlib
@@ -12,6 +12,8 @@ from pathlib import Path
 
 from disorder_landscape.chain import (
     MODELS,
+    NOISY,
+    NOISY_FROM,
     Run,
     preset_run,
     read_test_set,
@@ -20,19 +22,22 @@ from disorder_landscape.chain import (
 )
 from disorder_landscape.dataset.store import provenance, write_dataset
 
-PRESET = "full"
-"""Whose runs are shipped."""
+PRESETS = {"full": 0.0, NOISY: NOISY_FROM}
+"""Whose runs are shipped, and for errors from how many e²/h on; the test sets are the first's."""
 TEST_REALIZATIONS = 200
 MODEL_FILES = ("network.keras", "scaler.json", "config.json", "metrics.json", "curves.csv")
 DATA = Path(__file__).parent
 
 
-def ship(run: Run, model: str) -> None:
-    """Copy a trained model and the first of its test realizations."""
-    folder = shipped_model(model)
+def ship_model(run: Run, folder: Path) -> None:
+    """Copy a trained model."""
     folder.mkdir(parents=True, exist_ok=True)
     for name in MODEL_FILES:
         shutil.copyfile(run.model_folder / name, folder / name)
+
+
+def ship_test_set(run: Run, model: str) -> None:
+    """Copy the first of a run's test realizations."""
     test = read_test_set(run).isel(realization=slice(TEST_REALIZATIONS))
     indices = test.realization.to_numpy()
     attrs = {
@@ -58,6 +63,10 @@ def write_sums() -> None:
 
 
 if __name__ == "__main__":
-    for model in sys.argv[1:] or MODELS:
-        ship(preset_run(PRESET, model=model), model)
+    for preset in sys.argv[1:] or PRESETS:
+        for model in MODELS:
+            run = preset_run(preset, model=model)
+            ship_model(run, shipped_model(model, PRESETS[preset]))
+            if preset != NOISY:
+                ship_test_set(run, model)
     write_sums()

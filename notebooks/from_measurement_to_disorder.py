@@ -23,14 +23,14 @@ from matplotlib import pyplot as plt
 import disorder_landscape as dl
 
 DATA = Path.cwd() / "data_small"
-MODEL = DATA / "models" / "five_components_and_alpha"
+MODEL = DATA / "models" / "five_components_and_alpha_noisy"
 measured = xr.load_dataset(DATA / "measurement.nc", engine="h5netcdf")
 print(measured)
 
 # %% [markdown]
 # ## The network's guess
 #
-# This is where the paper stops. This network was trained with errors of 0.001 e²/h.
+# This is where the paper stops. This network was trained with errors of up to 0.1 e²/h.
 
 # %%
 guess = dl.predict(MODEL, measured)

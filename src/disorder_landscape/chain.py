@@ -26,6 +26,10 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 SHIPPED = "shipped"
 FIVE, TEN = MODELS = "five_components_and_alpha", "ten_components"
 """The paper's two models, as they are named where they are shipped."""
+NOISY = "noisy"
+"""The preset of networks for measurements with errors, which are shipped too: FIVE_noisy, …"""
+NOISY_FROM = 0.002
+"""In e²/h: for errors of this and more they are the ones to use; the others know 0.001."""
 
 
 def dataset_folder(config: DatasetConfig, build: Path) -> Path:
@@ -79,9 +83,10 @@ def open_run(config: str | Path, build: str | Path = "build") -> Run:
     return Run(Path(config).stem, load_config(config), Path(build) / Path(config).stem)
 
 
-def shipped_model(model: str) -> Path:
-    """Return the folder of a shipped network."""
-    return REPOSITORY / "data_small" / "models" / model
+def shipped_model(model: str, noise: float = 0.0) -> Path:
+    """Return the folder of a shipped network, the one for measurements with such errors in e²/h."""
+    name = model if noise < NOISY_FROM else f"{model}_{NOISY}"
+    return REPOSITORY / "data_small" / "models" / name
 
 
 def shipped_test_set(model: str) -> Path:

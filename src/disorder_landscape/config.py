@@ -146,9 +146,28 @@ class TrainingConfig(_Section):
     """Predict the mean of V too, which the paper does not; it is not counted in R²."""
     noise: Annotated[float, Field(ge=0, le=10)] = 0.0
     """Standard deviation in e²/h of Gaussian errors, drawn anew at every step."""
+    noise_up_to: Annotated[float, Field(gt=0, le=10)] | None = None
+    """With it, each example has a deviation of its own, log-uniform from `noise` to this: one
+    network for measurements of all these accuracies."""
     networks: Positive = 1
     """How many are trained, with consecutive seeds; the prediction is their mean."""
     seed: Annotated[int, Field(ge=0)] = 0
+
+    @model_validator(mode="after")
+    def _consistent(self) -> TrainingConfig:
+        if self.noise_up_to is not None and not 0 < self.noise <= self.noise_up_to:
+            raise ValueError("noise must be more than 0 and at most noise_up_to")
+        return self
+
+    @property
+    def largest_noise(self) -> float:
+        """Largest deviation in e²/h of an example's errors."""
+        return self.noise if self.noise_up_to is None else self.noise_up_to
+
+    @property
+    def typical_noise(self) -> float:
+        """Deviation in e²/h of an example's errors, the geometric mean of those that there are."""
+        return self.noise if self.noise_up_to is None else (self.noise * self.noise_up_to) ** 0.5
 
 
 class FiguresConfig(_Section):

@@ -48,6 +48,26 @@ def test_scalers_are_those_of_all_examples():
     np.testing.assert_allclose(inputs.mean[..., 0], inputs.mean[..., 1], atol=1e-6)
 
 
+def test_each_example_may_have_errors_of_its_own():
+    noisy = examples(noise=0.005, noise_up_to=0.1)
+    which = np.resize(np.arange(6), 600)
+    off = noisy.conductances(which, np.random.default_rng(0)) - X[which]
+    deviation = off.std(axis=(1, 2, 3, 4))
+    assert 0.004 < deviation.min() < 0.006
+    assert 0.09 < deviation.max() < 0.11
+    assert np.median(deviation) == pytest.approx(noisy.training.typical_noise, rel=0.2)
+    assert noisy.training.largest_noise == 0.1
+    with pytest.raises(ValueError, match="noise must be more than 0 and at most noise_up_to"):
+        TrainingConfig(noise_up_to=0.1)
+
+
+def test_inputs_are_scaled_as_the_errors_make_them():
+    """So that errors do not swamp a network where conductances hardly vary."""
+    still = Examples(np.zeros_like(X), Y, 3, TrainingConfig(noise=0.05))
+    scaled = still.fit_inputs().scale(0.05 * RNG.normal(size=X.shape).astype(np.float32))
+    assert abs(scaled).max() < 10
+
+
 def test_errors_have_the_stated_deviation_and_come_anew():
     noisy = examples(noise=0.05)
     everything = np.arange(6)

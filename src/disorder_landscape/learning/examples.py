@@ -48,7 +48,7 @@ class Examples:
     def fit_inputs(self) -> InputScaler:
         """Return the scaler of all examples' conductances."""
         parts = [self.X, mirrored_conductance(self.X)] if self.training.mirror else [self.X]
-        return InputScaler.fit(*parts)
+        return InputScaler.fit(*parts, noise=self.training.typical_noise)
 
     def labels(self, which: NDArray[np.intp]) -> FloatArray:
         """Return the labels of these examples, shape (example, label)."""
@@ -64,8 +64,16 @@ class Examples:
         images = which >= len(self.X)
         X[images] = mirrored_conductance(X[images])
         if rng is not None and self.training.noise > 0:
-            X += self.training.noise * rng.standard_normal(X.shape, dtype=np.float32)
+            X += self._noise(len(X), rng) * rng.standard_normal(X.shape, dtype=np.float32)
         return X
+
+    def _noise(self, examples: int, rng: np.random.Generator) -> ConductanceArray:
+        """Return the deviation of each example's errors in e²/h, to multiply conductances with."""
+        low, high = self.training.noise, self.training.noise_up_to
+        if high is None:
+            return np.array(low, dtype=np.float32)
+        noise = np.exp(rng.uniform(np.log(low), np.log(high), size=(examples, 1, 1, 1, 1)))
+        return noise.astype(np.float32)
 
 
 def split(realizations: int, test_fraction: float) -> tuple[slice, slice]:

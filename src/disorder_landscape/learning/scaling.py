@@ -131,20 +131,28 @@ class InputScaler:
     Conductances reach from 10⁻⁴ to 2 e²/h; asinh is linear below s and logarithmic above, which
     shows the network the small ones too. Some pixels hardly vary over the training set: nonlocal
     ones at B = 0 by 10⁻¹⁰ e²/h. Errors of measurement would be all that the network sees of them,
-    so that the deviation is taken as if each conductance had the experiment's.
+    so that the deviation is taken as if each conductance had the experiment's, or the training's.
 
     Parameters
     ----------
     mean, std : array of float32, shape (mu, B, bias, channel)
-        Of asinh(G/s), G with errors of NOISE_FLOOR.
+        Of asinh(G/s), G with errors.
     """
 
     mean: ConductanceArray
     std: ConductanceArray
 
     @classmethod
-    def fit(cls, *parts: ConductanceArray) -> Self:
-        """Return the scaler of a training set, in parts (realization, mu, B, bias, channel)."""
+    def fit(cls, *parts: ConductanceArray, noise: float = NOISE_FLOOR) -> Self:
+        """Return the scaler of a training set.
+
+        Parameters
+        ----------
+        parts : arrays, shape (realization, mu, B, bias, channel)
+            Conductances in e²/h, without errors.
+        noise : float
+            Deviation in e²/h of the errors that the network is to be shown; NOISE_FLOOR if less.
+        """
         fitted = StandardScaler()
         for X in parts:
             for start in range(0, len(X), ROWS_AT_A_TIME):
@@ -153,7 +161,7 @@ class InputScaler:
         mean, variance = (
             values.reshape(parts[0].shape[1:]) for values in (fitted.mean_, fitted.var_)
         )
-        std = np.sqrt(variance + (NOISE_FLOOR / COMPRESSION) ** 2)
+        std = np.sqrt(variance + (max(noise, NOISE_FLOOR) / COMPRESSION) ** 2)
         return cls(mean.astype(np.float32), std.astype(np.float32))
 
     def scale(self, X: ConductanceArray) -> ConductanceArray:
