@@ -241,12 +241,12 @@ def infer(
 ) -> None:
     """Find the disorder that explains a measurement, with error bars and a verdict.
 
-    The network's guess is refined with the exact simulation, by ensembles of wires. Some
-    conductances may be missing or NaN. Interrupted, the same command goes on (through
-    OUTPUT.unfinished.json).
+    The network's guess is refined with the exact simulation, by ensembles of wires; so is the
+    disorder model's prior, with --from-prior or where a guess has led astray. Some conductances may
+    be missing or NaN. Interrupted, the same command goes on (through OUTPUT.unfinished.json).
 
-    Example: landscape infer wire.nc --model data_small/models/five_components_and_alpha --noise
-    0.01 -o inferred.nc --plot inferred.png
+    Example: landscape infer wire.nc --model data_small/models/five_components_and_alpha_noisy
+    --noise 0.01 -o inferred.nc --plot inferred.png
     """
     from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
     from disorder_landscape.files import check_writable
@@ -254,7 +254,8 @@ def infer(
     from disorder_landscape.inference.measurement import measurement_of
     from disorder_landscape.inference.plot import plot_inference
     from disorder_landscape.inference.progress import inference_progress
-    from disorder_landscape.inference.report import parse_noise, summary
+    from disorder_landscape.inference.report import noise_hint, parse_noise, summary
+    from disorder_landscape.learning.model import load_model_config
     from disorder_landscape.simulation import check_plot
 
     check_writable("output", output)
@@ -265,6 +266,9 @@ def infer(
         check_writable("plot", plot)
     measured = read_dataset(measurement)
     errors = parse_noise(noise if noise is not None else str(measured.attrs.get("noise", 0.001)))
+    hint = "" if from_prior else noise_hint(load_model_config(model).training, errors)
+    if hint:
+        print(hint, file=sys.stderr)
     unfinished = output.with_name(f"{output.name}.unfinished.json")
     with resumable(), inference_progress() as told:
         result = find(

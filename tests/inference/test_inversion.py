@@ -8,10 +8,16 @@ import pytest
 import disorder_landscape as dl
 from disorder_landscape import ArgumentError, Nanowire, conductance
 from disorder_landscape.chain import FIVE, shipped_model
-from disorder_landscape.config import Config, DatasetConfig
+from disorder_landscape.config import Config, DatasetConfig, TrainingConfig
 from disorder_landscape.dataset.realizations import realization
-from disorder_landscape.inference.inversion import CONVERGED, NOT_CONVERGED, NOT_DESCRIBED
-from disorder_landscape.inference.report import parse_noise, summary
+from disorder_landscape.inference.approach import ApproachSettings
+from disorder_landscape.inference.inversion import (
+    CONVERGED,
+    NOT_CONVERGED,
+    NOT_DESCRIBED,
+    InversionSettings,
+)
+from disorder_landscape.inference.report import noise_hint, parse_noise, summary
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.learning.scaling import LabelScaler
 from disorder_landscape.physics.labels import CONDUCTANCES
@@ -101,13 +107,15 @@ def test_settings_are_the_measurements_own(measured):
     assert infer(G).attrs["barrier"] == (15.0, 15.0)
 
 
-def test_what_the_model_cannot_explain_is_flagged():
-    small_gap = replace(TRUE.wire, delta0=0.096)
-    assert infer(measure(small_gap)).attrs["verdict"] in (NOT_DESCRIBED, NOT_CONVERGED)
+@pytest.mark.parametrize("unmodelled", ["gap", "components"])
+def test_what_the_model_cannot_explain_is_flagged(unmodelled):
     more_components = realization(DATASET.model_copy(update={"components": 12}), 3)
-    result = infer(measure(more_components.wire))
+    wire = {"gap": replace(TRUE.wire, delta0=0.096), "components": more_components.wire}[unmodelled]
+    soon = InversionSettings(attempts=2, approach=ApproachSettings(rounds=4))
+    result = infer(measure(wire), settings=soon)
     assert result.attrs["verdict"] in (NOT_DESCRIBED, NOT_CONVERGED)
-    assert result.attrs["attempts"] > 1
+    assert result.attrs["attempts"] == 2
+    assert result.attrs["excess"] > 10
 
 
 def test_an_interrupted_run_goes_on(measured, inferred, tmp_path):
@@ -185,6 +193,13 @@ def test_noise_from_the_command_line():
             parse_noise(text)
 
 
+def test_a_network_says_what_errors_it_knows():
+    clean, noisy = TrainingConfig(noise=0.001), TrainingConfig(noise=0.005, noise_up_to=0.1)
+    assert noise_hint(clean, 0.001) == noise_hint(noisy, 0.1) == ""
+    errors = dict.fromkeys(CONDUCTANCES, 0.001) | {"G_RL": 0.01}
+    assert "errors of up to 0.001 e²/h: for 0.01 e²/h" in noise_hint(clean, errors)
+
+
 def test_the_summary_says_it_all(inferred):
     lines = "\n".join(summary(inferred))
     assert "verdict         converged" in lines
@@ -196,7 +211,7 @@ def test_the_shipped_network_and_the_smoother_find_a_fixed_wire():
     """The paper's sizes, the network's guess and an error of 0.01 e²/h: some µeV."""
     from disorder_landscape.learning.model import load_model
 
-    model = load_model(shipped_model(FIVE))
+    model = load_model(shipped_model(FIVE, 0.01))
     config = model.config.dataset.model_copy(update={"seed": 2026})
     true = realization(config, 1)
     G = measure(true.wire, 0.01, config)
@@ -205,4 +220,4 @@ def test_the_shipped_network_and_the_smoother_find_a_fixed_wire():
     assert result.attrs["verdict"] == CONVERGED
     assert result.attrs["start"] == "the network's guess"
     assert site_error(result, true.potential) < 0.002
-    assert float(np.sqrt(((guess["potential"] - true.potential) ** 2).mean())) > 0.01
+    assert float(np.sqrt(((guess["potential"] - true.potential) ** 2).mean())) > 0.004

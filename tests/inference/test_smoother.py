@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from disorder_landscape.config import DatasetConfig
+from disorder_landscape.inference.approach import ApproachSettings, approach, regress_on_data
 from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.inversion import chi_square_excess
 from disorder_landscape.inference.observation import Observation, noise_of_channels
@@ -30,6 +31,7 @@ class Linear:
     bend: float = 0.0
     unknowns: Unknowns = UNKNOWNS
     variance: np.ndarray = field(default_factory=lambda: np.full(40, 0.01**2))
+    channel: np.ndarray = field(default_factory=lambda: np.zeros(40, dtype=int))
 
     def simulate(self, X):
         Y = X @ self.slope
@@ -85,6 +87,46 @@ def test_what_the_line_cannot_explain_keeps_the_members_apart(linear):
     assert first.unexplained < 1e-6 < 1 < first_bent.unexplained
     *_, last = smooth(bent, posterior(linear), [0], SETTINGS)
     assert last.unexplained < SETTINGS.linear
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2, 3])
+def test_rounds_lead_from_the_prior_to_the_truth(seed):
+    """Data that go up and down across the prior: lines through them say little."""
+    rng = np.random.default_rng(seed)
+    slope = rng.normal(size=(SIZE, 40)) / np.sqrt(np.diag(UNKNOWNS.prior.covariance))[:, None]
+    truth = UNKNOWNS.prior.draw(rng, 2)[0]
+    waves = Linear(np.zeros(40), slope / 3, bend=2.0)
+    waves.data = waves.simulate(truth) + 0.01 * rng.normal(size=40)
+    steps = list(approach(waves, UNKNOWNS.prior, [0], ApproachSettings(unexplained=5.0)))
+    assert steps[0].unexplained > 100
+    assert 1 < len(steps) < ApproachSettings.rounds
+    found = steps[-1].distribution
+    assert steps[-1].spread < 0.2 * steps[0].spread
+    assert found.squared_distance(truth) < 3 * SIZE
+    *_, last = smooth(waves, found, [0], SETTINGS)
+    assert last.distribution.squared_distance(truth) < 3 * SIZE
+
+
+def test_rounds_on_lines_do_not_count_data_twice(linear):
+    """They come no closer than the posterior, which is where the first of them cannot be yet."""
+    exact = posterior(linear)
+    settings = ApproachSettings(unexplained=0.0, rounds=15, wider=1.0)
+    *_, last = approach(linear, UNKNOWNS.prior, [0], settings)
+    deviation, least = (np.sqrt(np.diag(one.covariance)) for one in (last.distribution, exact))
+    assert (deviation > 0.8 * least).all()
+    assert (deviation < 5 * least).all()
+    assert (abs(last.distribution.mean - exact.mean) < 4 * deviation).all()
+
+
+def test_errors_of_the_regression_are_those_of_members_it_has_not_seen(linear):
+    rng = np.random.default_rng(6)
+    z = rng.normal(size=(400, SIZE))
+    noise = 0.3 * rng.normal(size=(400, 40))
+    at, error = regress_on_data(linear, z @ linear.slope + noise, z)
+    assert at.shape == (SIZE,)
+    nothing = regress_on_data(linear, noise, z)[1]
+    assert np.trace(error) < 0.5 * SIZE
+    np.testing.assert_allclose(nothing, np.eye(SIZE), atol=0.3)
 
 
 def test_regression_is_exact_for_lines():

@@ -118,7 +118,7 @@ def infer(
         "verdict": verdict(observation, attempts),
         "excess": chosen.excess,
         "attempts": len(attempts),
-        "steps": sum(attempt.steps for attempt in attempts),
+        "steps": sum(attempt.rounds + attempt.steps for attempt in attempts),
         "start": start,
         "noise": errors,
         "temperature": measurement.temperature,

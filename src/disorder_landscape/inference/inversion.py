@@ -1,4 +1,4 @@
-"""From one measurement to the disorder in the wire: guess, smoother, polish, and a verdict."""
+"""From one measurement to the disorder in the wire: guess, approach, smoother, polish, verdict."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from functools import partial
 
 import numpy as np
 
+from disorder_landscape.inference.approach import ApproachSettings, approach
 from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.first_guess import network_guess
 from disorder_landscape.inference.observation import Observation, squared_misfits
@@ -42,9 +43,9 @@ class InversionSettings:
     """How many attempts there are, and how each goes about it."""
 
     smoother: SmootherSettings = field(default_factory=SmootherSettings)
-    wider: tuple[float | None, ...] = (1.0, 2.0, None, 4.0)
-    """Of each attempt: how many times the error of the network's guess it starts with; None starts
-    from the disorder model's prior."""
+    approach: ApproachSettings = field(default_factory=ApproachSettings)
+    attempts: int = 3
+    """The first starts from the network's guess, the others from the disorder model's prior."""
     more_members: float = 1.25
     """Each further attempt has so many times the members, and shrinks their spread more slowly."""
 
@@ -61,6 +62,9 @@ class Attempt:
     excess: float
     """How many of its deviations χ² is above its mean: of all data, or of a channel, if more."""
     steps: int
+    """Of the smoother, …"""
+    rounds: int = 0
+    """… and of the way in before it."""
 
     @property
     def fits(self) -> bool:
@@ -102,21 +106,24 @@ def invert(
         rng = np.random.default_rng([seed, 2**31])
         make = partial(network_guess, model, observation, rng)
         guess = _recalled(recall, "guess", make)
-    for number, wider in enumerate(settings.wider):
-        start = prior
-        if guess is not None and wider is not None:
-            start = Gaussian(guess.mean, wider**2 * guess.covariance)
-        smoother = _with_more_members(settings, number)
+    for number in range(settings.attempts):
+        way_in, smoother = _with_more_members(settings, number)
+        start, rounds = guess, 0
+        if start is None or number > 0:
+            start = prior
+            for one in approach(observation, prior, [seed, number], way_in, recall):
+                told(number, rounds, one)
+                start, rounds = one.distribution, rounds + 1
         step, steps = None, 0
         for step in smooth(observation, start, [seed, number], smoother, recall):
-            told(number, steps, step)
+            told(number, rounds + steps, step)
             steps += 1
         assert step is not None
         answer = step.distribution
         if not step.is_last(smoother):
             make = partial(polish, observation, answer)
             answer = _recalled(recall, f"polish.{number}", make)
-        attempts.append(_attempt(observation, answer, steps))
+        attempts.append(_attempt(observation, answer, steps, rounds))
         if verdict(observation, attempts) != NOT_CONVERGED:
             break
     return attempts
@@ -126,20 +133,26 @@ def _recalled(recall: Recall, name: str, make: Callable[[], Gaussian]) -> Gaussi
     return Gaussian.from_dict(recall(name, lambda: make().to_dict()))
 
 
-def _attempt(observation: Observation, answer: Gaussian, steps: int) -> Attempt:
+def _attempt(observation: Observation, answer: Gaussian, steps: int, rounds: int) -> Attempt:
     data = observation.simulate(answer.mean[None])[0]
     squares = squared_misfits(observation, data)
     objective = float(squares.sum() + observation.unknowns.prior.squared_distance(answer.mean))
-    return Attempt(answer, data, objective, chi_square_excess(observation, squares), steps)
+    excess = chi_square_excess(observation, squares)
+    return Attempt(answer, data, objective, excess, steps, rounds)
 
 
-def _with_more_members(settings: InversionSettings, number: int) -> SmootherSettings:
+def _with_more_members(
+    settings: InversionSettings, number: int
+) -> tuple[ApproachSettings, SmootherSettings]:
     more = settings.more_members**number
-    return replace(
-        settings.smoother,
-        members_per_unknown=settings.smoother.members_per_unknown * more,
-        least_shrinking=settings.smoother.least_shrinking ** (1 / more),
+    of_approach, of_smoother = (
+        {
+            "members_per_unknown": one.members_per_unknown * more,
+            "least_shrinking": one.least_shrinking ** (1 / more),
+        }
+        for one in (settings.approach, settings.smoother)
     )
+    return replace(settings.approach, **of_approach), replace(settings.smoother, **of_smoother)
 
 
 def chi_square_excess(observation: Observation, squares: FloatArray) -> float:

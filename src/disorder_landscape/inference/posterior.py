@@ -1,4 +1,4 @@
-"""Members of the posterior, and the check that it is normal.
+"""Members of the posterior, the check that it is normal, and whether it predicts further data.
 
 The answer of an inversion is a normal distribution so narrow (some µeV) that the conductances are
 linear in the unknowns across it. Whether that is so is tested by a Markov chain of the exact
@@ -20,6 +20,8 @@ WIDER = 1.15
 """Proposals are this much wider than the answer, so that its tails are proposed."""
 AT_A_TIME = 64
 """Members that are simulated at a time."""
+REPLICATES = 100
+"""Data sets with which further data are compared."""
 
 
 class Chain(NamedTuple):
@@ -58,3 +60,25 @@ def independence_chain(
             present, taken = i, taken + 1
         chain[i - 1] = X[present]
     return Chain(chain, taken / length)
+
+
+def predictive_p(further: Observation, answer: Gaussian, rng: np.random.Generator) -> float:
+    """Return how likely an answer makes further data as unlike its prediction as these or more.
+
+    The posterior predictive p-value of χ² (Gelman, Meng and Stern, Stat. Sinica 6, 733 (1996)):
+    members of the answer are simulated at the new settings and given errors, and the data are
+    counted among them. What the members do not agree on weighs less.
+
+    Parameters
+    ----------
+    further : Observation
+        Data that the inversion has not seen, K'_full of S-II.1.
+    answer : Gaussian
+    rng : Generator
+    """
+    Y = further.simulate(answer.draw(rng, REPLICATES))
+    deviation = np.sqrt(further.variance)
+    mean, variance = Y.mean(axis=0), Y.var(axis=0, ddof=1) + further.variance
+    replicates = Y + deviation * rng.normal(size=Y.shape)
+    chi_square = ((np.vstack([further.data, replicates]) - mean) ** 2 / variance).sum(axis=1)
+    return float((chi_square >= chi_square[0]).mean())

@@ -6,7 +6,13 @@ import numpy as np
 import xarray as xr
 
 from disorder_landscape.arguments import numbers_of
+from disorder_landscape.config import TrainingConfig
+from disorder_landscape.inference.observation import noise_of_channels
+from disorder_landscape.learning.scaling import NOISE_FLOOR
 from disorder_landscape.physics.labels import CONDUCTANCES
+
+UNUSED_TO = 2.0
+"""A network guesses badly from errors that are more than so many times those of its training."""
 
 
 def parse_noise(text: str) -> float | dict[str, float]:
@@ -20,6 +26,17 @@ def parse_noise(text: str) -> float | dict[str, float]:
     must = f"be a number in e²/h, or one for each of {', '.join(CONDUCTANCES)}"
     values = numbers_of("noise", text, (1, len(CONDUCTANCES)), must)
     return values[0] if len(values) == 1 else dict(zip(CONDUCTANCES, values, strict=True))
+
+
+def noise_hint(training: TrainingConfig, noise: float | dict[str, float]) -> str:
+    """Return a line about a network that has never seen such errors; empty if it has."""
+    most, known = noise_of_channels(noise).max(), training.largest_noise
+    if most <= UNUSED_TO * max(known, NOISE_FLOOR):
+        return ""
+    return (
+        f"This network was trained with errors of up to {known:g} e²/h: for {most:g} e²/h one of "
+        "the models named ..._noisy guesses better, and the inversion takes less time."
+    )
 
 
 def summary(result: xr.Dataset) -> list[str]:
