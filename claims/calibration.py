@@ -18,14 +18,13 @@ import pandas as pd
 from scipy.stats import kstest, norm, uniform
 from tqdm import tqdm
 
-from disorder_landscape.chain import MODELS, shipped_model
+from disorder_landscape.chain import MODELS
 from disorder_landscape.claims.inversions import COVERAGE, INVERSIONS, coverage, deviations
 from disorder_landscape.dataset.store import provenance
 from disorder_landscape.files import replacing, write_json
 from disorder_landscape.inference.inversion import best, invert
 from disorder_landscape.inference.posterior import independence_chain
-from disorder_landscape.learning.model import load_model
-from disorder_landscape.studies.inversions import Task, fresh_wire
+from disorder_landscape.studies.inversions import Task, fresh_wire, network_of
 
 NOISE = 0.01
 """Of the wires for which there is a chain, in e²/h."""
@@ -45,10 +44,11 @@ def calibration(table: pd.DataFrame) -> dict[str, object]:
 
 def chains(model: str, wires: int) -> list[dict[str, float]]:
     """Compare answers with chains: proposals accepted, means apart and ratios of deviations."""
-    network, rows = load_model(shipped_model(model)), []
+    rows = []
     for index in tqdm(range(wires), unit=" chains", desc=model):
-        observation, _ = fresh_wire(Task(model, NOISE, index))
-        answer = best(invert(observation, network, seed=index)).answer
+        task = Task(model, NOISE, index)
+        observation, _ = fresh_wire(task)
+        answer = best(invert(observation, network_of(model, NOISE), seed=index)).answer
         chain = independence_chain(observation, answer, LENGTH, np.random.default_rng(index))
         scale = np.sqrt(np.diag(answer.covariance))
         rows.append(

@@ -10,6 +10,7 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -41,14 +42,19 @@ class Task:
     index: int
 
 
+def network_of(model: str, noise: float) -> TrainedModel:
+    """Return the shipped network for measurements with such errors in e²/h."""
+    return _model(shipped_model(model, noise))
+
+
 @lru_cache
-def _model(name: str) -> TrainedModel:
-    return load_model(shipped_model(name))
+def _model(folder: Path) -> TrainedModel:
+    return load_model(folder)
 
 
 def fresh_wire(task: Task) -> tuple[Observation, FloatArray]:
     """Return a measurement of a fresh wire, with errors, and its true unknowns (unknown,)."""
-    config = _model(task.model).config.dataset.model_copy(update={"seed": SEED})
+    config = network_of(task.model, task.noise).config.dataset.model_copy(update={"seed": SEED})
     unknowns = Unknowns(config)
     truth = unknowns.of_realization(realization(config, task.index))
     settings = empty_measurement(config)
@@ -71,7 +77,7 @@ def inversion_row(task: Task) -> dict[str, object]:
         the answer in units of its deviations; `mahalanobis`, all of them together squared.
     """
     observation, truth = fresh_wire(task)
-    unknowns, network = observation.unknowns, _model(task.model)
+    unknowns, network = observation.unknowns, network_of(task.model, task.noise)
     begun = time.perf_counter()
     attempts = invert(observation, network, seed=task.index)
     seconds = time.perf_counter() - begun
@@ -95,12 +101,19 @@ def inversion_row(task: Task) -> dict[str, object]:
         "excess": chosen.excess,
         "verdict": verdict(observation, attempts),
         "attempts": len(attempts),
-        "steps": sum(attempt.steps for attempt in attempts),
+        "steps": sum(attempt.rounds + attempt.steps for attempt in attempts),
         "seconds": seconds,
     }
-    row = {k: float(f"{v:.5g}") if isinstance(v, float | np.ndarray) else v for k, v in row.items()}
     z = (truth - mean) / np.sqrt(np.diag(covariance))
-    return {**row, "deviations": " ".join(f"{one:.3f}" for one in z)}
+    return {**rounded(row), "deviations": " ".join(f"{one:.3f}" for one in z)}
+
+
+def rounded(row: dict[str, object]) -> dict[str, object]:
+    """Return a row with five digits of each number that is not whole."""
+    return {
+        key: float(f"{value:.5g}") if isinstance(value, float | np.ndarray) else value
+        for key, value in row.items()
+    }
 
 
 def wrong(table: pd.DataFrame) -> pd.Series:

@@ -1,0 +1,60 @@
+"""Inversions of wires with something that the model lacks: which wrong answers are noticed.
+
+Writes unmodelled.csv, a row per inversion: 102 wires with one thing other than the model has it,
+and 100 without, for the false alarms. What is there is not repeated: an interrupted run goes on.
+Example: python claims/unmodelled.py --noise 0.01 --kinds gap nothing
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import pandas as pd
+from tqdm import tqdm
+
+from disorder_landscape.chain import FIVE, MODELS
+from disorder_landscape.physics.compilation import compile_kernels
+from disorder_landscape.studies.rows import missing, read_rows, write_rows
+from disorder_landscape.studies.unmodelled import KEYS, KINDS, NOTHING, Task, unmodelled_row
+from disorder_landscape.workers import each_result
+
+COMMAND = "python claims/unmodelled.py"
+WIRES, GOOD = 17, 100
+"""Of each kind, and without anything unmodelled."""
+
+
+def main() -> None:
+    """Carry out what is missing."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    folder = Path(__file__).resolve().parent
+    parser.add_argument("-o", "--output", type=Path, default=folder / "unmodelled.csv")
+    parser.add_argument("--models", nargs="+", choices=MODELS, default=[FIVE])
+    parser.add_argument("--noise", nargs="+", type=float, default=[0.01])
+    parser.add_argument("--kinds", nargs="+", choices=list(KINDS), default=list(KINDS))
+    parser.add_argument("--workers", type=int, default=2)
+    arguments = parser.parse_args()
+
+    tasks = [
+        Task(model, noise, kind, index)
+        for index in range(GOOD)
+        for noise in arguments.noise
+        for model in arguments.models
+        for kind in arguments.kinds
+        if kind == NOTHING or index < WIRES
+    ]
+    table = read_rows(arguments.output, KEYS)
+    left = missing(tasks, table, KEYS)
+    compile_kernels()
+    with tqdm(total=len(tasks), initial=len(tasks) - len(left), unit=" wires") as bar:
+        for row in each_result(unmodelled_row, left, arguments.workers):
+            table = pd.concat([table, pd.DataFrame([row])], ignore_index=True)
+            write_rows(table, arguments.output, KEYS, COMMAND)
+            bar.update()
+    write_rows(table, arguments.output, KEYS, COMMAND)
+
+
+if __name__ == "__main__":
+    main()

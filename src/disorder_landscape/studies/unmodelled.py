@@ -1,0 +1,168 @@
+"""Inversions of wires with something that the model lacks, and what notices wrong answers.
+
+Each row inverts a fresh wire of `studies.inversions`, of which one thing is other than the model
+has it, and asks two checks: the verdict, and measurements at other barriers (K'_full of S-II.1),
+which the inversion has not seen. Rows of the kind "nothing" count false alarms.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+
+import numpy as np
+import xarray as xr
+
+from disorder_landscape.dataset.realizations import realization
+from disorder_landscape.inference.inversion import best, invert, verdict
+from disorder_landscape.inference.measurement import Measurement, empty_measurement
+from disorder_landscape.inference.observation import Observation, noise_of_channels
+from disorder_landscape.inference.posterior import predictive_p
+from disorder_landscape.inference.unknowns import Unknowns
+from disorder_landscape.inference.verification import verify
+from disorder_landscape.physics.labels import AXES, CONDUCTANCES
+from disorder_landscape.physics.parameters import FloatArray, Nanowire
+from disorder_landscape.physics.transport import conductance
+from disorder_landscape.studies.inversions import SEED, network_of, rounded
+
+NOTHING = "nothing"
+KINDS = {
+    NOTHING: "the model is right",
+    "gap": "Δ₀ 20 % smaller, or larger",
+    "temperature": "100 mK instead of 50 mK",
+    "barrier": "the left barrier twice as high, or the right one",
+    "uncorrelated": "V of each site independent, as strong",
+    "dissipation": "Γ = 1 µeV on each site",
+    "bias": "biases 5 µV higher than stated",
+}
+"""What is other than the model has it; of two, the index takes turns."""
+HOT, DISSIPATION, OFFSET = 0.1, 1e-3, 5e-3
+"""In K, meV and meV."""
+OTHER_BARRIERS = (25.0, 10.0)
+"""Of the measurements that check the answer, left and right in meV."""
+EVERY = 2
+"""Of the points of μ and B, how many they are apart."""
+CONTROLS = 19
+SHIFTS = np.linspace(-0.03, 0.03, 7)
+"""With how many wires of wrong disorder they are compared, and which means of V are tried."""
+UNLIKELY = 0.01
+"""Further data are no longer the answer's if it makes such with less than this probability."""
+KEYS = ["model", "noise", "kind", "index"]
+
+
+@dataclass(frozen=True)
+class Task:
+    """One inversion: a shipped model's name, the noise in e²/h, what is other, and which wire."""
+
+    model: str
+    noise: float
+    kind: str
+    index: int
+
+
+def changed(
+    kind: str, index: int, wire: Nanowire, settings: Measurement
+) -> tuple[Nanowire, Measurement]:
+    """Return the wire as it is, and the settings at which it is measured in truth."""
+    first = index % 2 == 0
+    match kind:
+        case "gap":
+            return replace(wire, delta0=wire.delta0 * (0.8 if first else 1.2)), settings
+        case "temperature":
+            return wire, replace(settings, temperature=HOT)
+        case "barrier":
+            left, right = wire.barrier
+            barrier = (2 * left, right) if first else (left, 2 * right)
+            return replace(wire, barrier=barrier), settings
+        case "uncorrelated":
+            rng = np.random.default_rng([SEED, index, 2])
+            V = rng.normal(wire.potential.mean(), wire.potential.std(), wire.sites)
+            return replace(wire, potential=V), settings
+        case "dissipation":
+            return replace(wire, dissipation=DISSIPATION), settings
+        case "bias":
+            return wire, replace(settings, bias=settings.bias + OFFSET)
+        case _:
+            return wire, settings
+
+
+def measured(task: Task, wire: Nanowire, settings: Measurement, part: int) -> Measurement:
+    """Return what is measured at the settings, with errors, as somebody believes who knows less."""
+    true, true_settings = changed(task.kind, task.index, wire, settings)
+    G = conductances(true, true_settings)
+    rng = np.random.default_rng([SEED, task.index, part])
+    return replace(settings, G=G + task.noise * rng.normal(size=G.shape))
+
+
+def conductances(wire: Nanowire, at: Measurement) -> FloatArray:
+    """Return those of a wire in e²/h, shape (mu, B, bias, channel)."""
+    G = conductance(wire, at.mu, at.B, at.bias, at.temperature, theta=at.theta)
+    return np.stack([G[name].to_numpy() for name in CONDUCTANCES], axis=-1)
+
+
+def unmodelled_row(task: Task) -> dict[str, object]:
+    """Invert the measurement, check the answer, and compare it with the truth.
+
+    Returns
+    -------
+    dict
+        As `inversion_row`; besides, `departure`, the root-mean-square change of the conductances in
+        units of the noise; `p_controls`, the p-value of `verify`; `p_predictive` that of
+        `predictive_p`, both at OTHER_BARRIERS.
+    """
+    network = network_of(task.model, task.noise)
+    config = network.config.dataset.model_copy(update={"seed": SEED})
+    unknowns, noise = Unknowns(config), noise_of_channels(task.noise)
+    one = realization(config, task.index)
+    settings = empty_measurement(config)
+    observation = Observation(measured(task, one.wire, settings, 1), unknowns, noise)
+    begun = time.perf_counter()
+    attempts = invert(observation, network, seed=task.index)
+    seconds = time.perf_counter() - begun
+    chosen = best(attempts)
+    mean = chosen.answer.mean
+    true, true_settings = changed(task.kind, task.index, one.wire, settings)
+    change = conductances(true, true_settings) - conductances(one.wire, settings)
+    other_settings = replace(
+        settings, mu=config.mu[::EVERY], B=config.B[::EVERY], barrier=OTHER_BARRIERS
+    )
+    other_wire = replace(one.wire, barrier=OTHER_BARRIERS)
+    further = Observation(measured(task, other_wire, other_settings, 3), unknowns, noise)
+    rng = np.random.default_rng([SEED, task.index, 4])
+    return rounded(
+        {
+            "model": task.model,
+            "noise": task.noise,
+            "kind": task.kind,
+            "index": task.index,
+            "departure": float(np.sqrt((change**2).mean()) / task.noise),
+            "site_error": float(np.sqrt(((unknowns.potential(mean) - true.potential) ** 2).mean())),
+            "spread": unknowns.site_deviation(chosen.answer.covariance),
+            "alpha_error": abs(unknowns.alpha(mean) - one.alpha),
+            "excess": chosen.excess,
+            "verdict": verdict(observation, attempts),
+            "p_controls": _p_of_controls(unknowns, mean, further, task),
+            "p_predictive": predictive_p(further, chosen.answer, rng),
+            "attempts": len(attempts),
+            "steps": sum(attempt.rounds + attempt.steps for attempt in attempts),
+            "seconds": seconds,
+        }
+    )
+
+
+def _p_of_controls(unknowns: Unknowns, mean: FloatArray, further: Observation, task: Task) -> float:
+    m = further.measurement
+    prediction = xr.Dataset(
+        {
+            "potential": ("site", unknowns.potential(mean)),
+            "alpha": float(unknowns.alpha(mean)),
+            "components": ("component", unknowns.components(mean)),
+        }
+    )
+    dataset = xr.Dataset(
+        {name: (AXES, m.G[..., c]) for c, name in enumerate(CONDUCTANCES)},
+        coords={axis: getattr(m, axis) for axis in AXES},
+        attrs={"theta": m.theta, "barrier": m.barrier, "temperature": m.temperature},
+    )
+    found = verify(prediction, dataset, task.noise, CONTROLS, SEED, unknowns.config, shifts=SHIFTS)
+    return float(found["p_value"])
