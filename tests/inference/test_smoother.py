@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import pytest
+from scipy.stats import kstest
 
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.inference.approach import ApproachSettings, approach, regress_on_data
@@ -11,7 +12,7 @@ from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.inversion import chi_square_excess
 from disorder_landscape.inference.observation import Observation, noise_of_channels
 from disorder_landscape.inference.polish import linearise, polish
-from disorder_landscape.inference.posterior import independence_chain
+from disorder_landscape.inference.posterior import independence_chain, predictive_p
 from disorder_landscape.inference.smoother import SmootherSettings, Step, regression, smooth
 from disorder_landscape.inference.unknowns import Gaussian, Unknowns
 from disorder_landscape.physics.disorder import disorder_realization
@@ -163,6 +164,19 @@ def test_the_chain_has_the_posteriors_moments(linear):
     too_narrow = Gaussian(exact.mean, exact.covariance / 4)
     wide = independence_chain(linear, too_narrow, 4000, np.random.default_rng(2))
     assert wide.acceptance < chain.acceptance
+
+
+def test_further_data_are_the_answers_or_not(linear):
+    """The p-value is uniform for data that members of the answer make, and small for others."""
+    exact, rng = posterior(linear), np.random.default_rng(7)
+    slope = rng.normal(size=linear.slope.shape)
+    p = []
+    for member in exact.draw(rng, 60):
+        further = Linear(member @ slope + 0.01 * rng.normal(size=40), slope)
+        p.append(predictive_p(further, exact, rng))
+    assert kstest(p, "uniform").pvalue > 0.01
+    shifted = Linear(further.data + 0.02, slope)
+    assert predictive_p(shifted, exact, rng) < 0.02
 
 
 def test_the_prior_is_the_disorder_models():

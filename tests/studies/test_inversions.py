@@ -14,11 +14,16 @@ from disorder_landscape.claims.inversions import (
     accuracy_table,
     coverage,
     uniqueness_table,
+    unmodelled_table,
 )
+from disorder_landscape.config import DatasetConfig
 from disorder_landscape.inference.inversion import CONVERGED, NOT_CONVERGED
+from disorder_landscape.inference.measurement import empty_measurement
+from disorder_landscape.physics.parameters import Nanowire
 from disorder_landscape.studies.inversions import KEYS, Task, wrong
 from disorder_landscape.studies.rows import missing, read_rows, write_rows
 from disorder_landscape.studies.uniqueness import NOISE, Setting, information_rows
+from disorder_landscape.studies.unmodelled import KINDS, NOTHING, changed
 
 
 def row(index, model=FIVE, noise=0.01, **changes):
@@ -66,6 +71,39 @@ def test_the_table_counts_wrong_answers_by_their_verdict(tmp_path):
     line = accuracy_table(path).splitlines()[-1]
     assert "five components and alpha, 0.01 | 40 | 40 | 1, 1, 1e+02" in line
     assert "| 98 % | 1, 1 |" in line
+
+
+def test_the_table_of_what_the_model_lacks_counts_both_checks(tmp_path):
+    good = {"site_error": 0.001, "spread": 0.001, "verdict": CONVERGED, "p_predictive": 0.5}
+    bad = good | {"site_error": 0.1, "verdict": NOT_CONVERGED, "p_predictive": 0.0099}
+    rows = [
+        {"kind": "gap", "departure": 2.0} | some
+        for some in (bad, bad, bad | {"verdict": CONVERGED}, bad | good | {"site_error": 0.1}, good)
+    ]
+    rows += [{"kind": "nothing", "departure": 0.0} | good | {"p_predictive": 0.001}]
+    path = tmp_path / "rows.csv"
+    pd.DataFrame(rows).to_csv(path, index=False)
+    nothing, gap = unmodelled_table(path).splitlines()[2:]
+    assert nothing.endswith("| the model is right | 1 | 0 | 1, 1 | 0 | 0, 0 | 0 | 0, 1 |")
+    assert gap.endswith("| 5 | 2 | 1e+02, 1e+02 | 4 | 2, 3 | 1 | 0, 0 |")
+
+
+@pytest.mark.parametrize("kind", list(KINDS))
+def test_one_thing_is_other_than_the_model_has_it(kind):
+    """And only one, in turns to either side where there are two."""
+    wire = Nanowire(np.random.default_rng(0).normal(size=30))
+    settings = empty_measurement(DatasetConfig(realizations=1, components=5))
+    for index in range(2):
+        other, others = changed(kind, index, wire, settings)
+        differ = [
+            name
+            for one, two in ((wire, other), (settings, others))
+            for name in vars(one)
+            if not np.array_equal(getattr(one, name), getattr(two, name))
+        ]
+        assert len(differ) == (kind != NOTHING)
+    first, second = (changed("gap", index, wire, settings)[0].delta0 for index in range(2))
+    assert (first, second) == pytest.approx((0.096, 0.144))
 
 
 def test_claims_of_uniqueness(information, tmp_path):

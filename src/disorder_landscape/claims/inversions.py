@@ -13,9 +13,11 @@ from disorder_landscape.claims.table import markdown
 from disorder_landscape.inference.inversion import CONVERGED
 from disorder_landscape.physics.parameters import FloatArray
 from disorder_landscape.studies.inversions import wrong
+from disorder_landscape.studies.unmodelled import KINDS, UNLIKELY
 
 INVERSIONS = REPOSITORY / "claims" / "inversions.csv"
 UNIQUENESS = REPOSITORY / "claims" / "uniqueness.csv"
+UNMODELLED = REPOSITORY / "claims" / "unmodelled.csv"
 SHOWN = (0.01, 0.1)
 """Noise of which the table of uniqueness has rows, in e²/h."""
 COVERAGE = (0.5, 0.8, 0.95)
@@ -30,6 +32,16 @@ ACCURACY_COLUMNS = (
     "wrong: flagged, unflagged",
     "within 50, 80, 95 % (%)",
     "seconds, one core",
+)
+UNMODELLED_COLUMNS = (
+    "in truth",
+    "wires",
+    "G changed by (noise)",
+    "V off by (µeV): median, worst",
+    "wrong",
+    "of these flagged: verdict, K'",
+    "missed",
+    "right, but flagged: verdict, K'",
 )
 
 
@@ -65,6 +77,32 @@ def accuracy_table(path: Path = INVERSIONS) -> str:
             )
         )
     return markdown(ACCURACY_COLUMNS, rows)
+
+
+def unmodelled_table(path: Path = UNMODELLED) -> str:
+    """Return a Markdown table of what is noticed of wires that the model does not describe."""
+    table = pd.read_csv(path)
+    rows = []
+    for kind, truth in KINDS.items():
+        some = table[table["kind"] == kind]
+        if some.empty:
+            continue
+        is_wrong = wrong(some)
+        by_verdict, by_further = some["verdict"] != CONVERGED, some["p_predictive"] <= UNLIKELY
+        error = 1e3 * some["site_error"]
+        rows.append(
+            (
+                truth,
+                str(len(some)),
+                f"{some['departure'].median():.2g}",
+                f"{error.median():.2g}, {error.max():.2g}",
+                str(is_wrong.sum()),
+                f"{(is_wrong & by_verdict).sum()}, {(is_wrong & by_further).sum()}",
+                str((is_wrong & ~by_verdict & ~by_further).sum()),
+                f"{(~is_wrong & by_verdict).sum()}, {(~is_wrong & by_further).sum()}",
+            )
+        )
+    return markdown(UNMODELLED_COLUMNS, rows)
 
 
 def uniqueness_table(path: Path = UNIQUENESS) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from disorder_landscape.arguments import require
-from disorder_landscape.chain import shipped_model, shipped_test_set
+from disorder_landscape.chain import NOISY, shipped_model, shipped_test_set
 from disorder_landscape.dataset.shards import VARIABLES
 from disorder_landscape.dataset.store import read_dataset
 from disorder_landscape.learning.curves import training_seconds
@@ -92,7 +92,7 @@ def sets_and_training_hours(model: str) -> tuple[int, float]:
 
 @cache
 def _loaded(model: str) -> tuple[xr.Dataset, TrainedModel]:
-    test = read_dataset(shipped_test_set(model), VARIABLES)
+    test = read_dataset(shipped_test_set(model.removesuffix(f"_{NOISY}")), VARIABLES)
     return test, load_model(shipped_model(model))
 
 

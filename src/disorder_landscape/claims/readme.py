@@ -10,7 +10,11 @@ from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.claim import load_claims
 from disorder_landscape.claims.conventions import conventions_table
 from disorder_landscape.claims.findings import stored_findings
-from disorder_landscape.claims.inversions import accuracy_table, uniqueness_table
+from disorder_landscape.claims.inversions import (
+    accuracy_table,
+    uniqueness_table,
+    unmodelled_table,
+)
 from disorder_landscape.claims.table import COLUMNS, markdown, rows, tally
 from disorder_landscape.files import replacing
 
@@ -63,6 +67,7 @@ def written(text: str) -> str:
         "conventions": conventions_table,
         "inversions": accuracy_table,
         "uniqueness": uniqueness_table,
+        "unmodelled": unmodelled_table,
     }
     for name, content in contents.items():
         text = Section(name).replaced(text, content())
