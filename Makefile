@@ -72,6 +72,8 @@ study: $(READY) ## carry out the study STUDY of configs/studies, its table into 
 
 inversion-study: $(READY) ## invert fresh wires, judge errors and error bars, tables into claims (hours; it goes on)
 	$(VENV_PYTHON) claims/inversion.py
+	$(VENV_PYTHON) claims/starts.py
+	$(VENV_PYTHON) claims/components.py
 	$(VENV_PYTHON) claims/unmodelled.py
 	$(VENV_PYTHON) claims/uniqueness.py
 	$(VENV_PYTHON) claims/smoothers.py

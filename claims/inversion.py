@@ -9,15 +9,10 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-import pandas as pd
-from tqdm import tqdm
-
 from disorder_landscape.chain import MODELS
-from disorder_landscape.physics.compilation import compile_kernels
 from disorder_landscape.studies.inversions import KEYS, Task, inversion_row
 from disorder_landscape.studies.noise import NOISE
-from disorder_landscape.studies.rows import missing, read_rows, write_rows
-from disorder_landscape.workers import each_result
+from disorder_landscape.studies.rows import complete
 
 COMMAND = "python claims/inversion.py"
 
@@ -41,15 +36,7 @@ def main() -> None:
         for noise in arguments.noise
         for model in arguments.models
     ]
-    table = read_rows(arguments.output, KEYS)
-    left = missing(tasks, table, KEYS)
-    compile_kernels()
-    with tqdm(total=len(tasks), initial=len(tasks) - len(left), unit=" wires") as bar:
-        for row in each_result(inversion_row, left, arguments.workers):
-            table = pd.concat([table, pd.DataFrame([row])], ignore_index=True)
-            write_rows(table, arguments.output, KEYS, COMMAND)
-            bar.update()
-    write_rows(table, arguments.output, KEYS, COMMAND)
+    complete(inversion_row, tasks, arguments.output, KEYS, COMMAND, arguments.workers)
 
 
 if __name__ == "__main__":

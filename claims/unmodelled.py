@@ -10,14 +10,9 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-import pandas as pd
-from tqdm import tqdm
-
 from disorder_landscape.chain import FIVE, MODELS
-from disorder_landscape.physics.compilation import compile_kernels
-from disorder_landscape.studies.rows import missing, read_rows, write_rows
+from disorder_landscape.studies.rows import complete
 from disorder_landscape.studies.unmodelled import KEYS, KINDS, NOTHING, Task, unmodelled_row
-from disorder_landscape.workers import each_result
 
 COMMAND = "python claims/unmodelled.py"
 WIRES, GOOD = 17, 100
@@ -45,15 +40,7 @@ def main() -> None:
         for kind in arguments.kinds
         if kind == NOTHING or index < WIRES
     ]
-    table = read_rows(arguments.output, KEYS)
-    left = missing(tasks, table, KEYS)
-    compile_kernels()
-    with tqdm(total=len(tasks), initial=len(tasks) - len(left), unit=" wires") as bar:
-        for row in each_result(unmodelled_row, left, arguments.workers):
-            table = pd.concat([table, pd.DataFrame([row])], ignore_index=True)
-            write_rows(table, arguments.output, KEYS, COMMAND)
-            bar.update()
-    write_rows(table, arguments.output, KEYS, COMMAND)
+    complete(unmodelled_row, tasks, arguments.output, KEYS, COMMAND, arguments.workers)
 
 
 if __name__ == "__main__":

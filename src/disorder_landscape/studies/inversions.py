@@ -16,12 +16,13 @@ import numpy as np
 import pandas as pd
 
 from disorder_landscape.chain import shipped_model
+from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.inference.first_guess import network_labels
 from disorder_landscape.inference.inversion import best, invert, verdict
 from disorder_landscape.inference.measurement import empty_measurement
 from disorder_landscape.inference.observation import Observation, noise_of_channels
-from disorder_landscape.inference.unknowns import Unknowns
+from disorder_landscape.inference.unknowns import Gaussian, Unknowns
 from disorder_landscape.learning.model import TrainedModel, load_model
 from disorder_landscape.physics.parameters import FloatArray
 
@@ -54,15 +55,50 @@ def _model(folder: Path) -> TrainedModel:
 
 def fresh_wire(task: Task) -> tuple[Observation, FloatArray]:
     """Return a measurement of a fresh wire, with errors, and its true unknowns (unknown,)."""
-    config = network_of(task.model, task.noise).config.dataset.model_copy(update={"seed": SEED})
+    config = network_of(task.model, task.noise).config.dataset
+    return measured_wire(config, task.noise, task.index)
+
+
+def measured_wire(
+    config: DatasetConfig, noise: float, index: int
+) -> tuple[Observation, FloatArray]:
+    """Return a measurement of a fresh wire of a disorder model, with errors, and the truth."""
+    config = config.model_copy(update={"seed": SEED})
     unknowns = Unknowns(config)
-    truth = unknowns.of_realization(realization(config, task.index))
+    truth = unknowns.of_realization(realization(config, index))
     settings = empty_measurement(config)
-    noise = noise_of_channels(task.noise)
-    G = Observation(settings, unknowns, noise).conductances(truth[None])[0]
-    rng = np.random.default_rng([SEED, task.index, 1])
-    measured = G + task.noise * rng.normal(size=G.shape)
-    return Observation(replace(settings, G=measured), unknowns, noise), truth
+    errors = noise_of_channels(noise)
+    G = Observation(settings, unknowns, errors).conductances(truth[None])[0]
+    rng = np.random.default_rng([SEED, index, 1])
+    measured = G + noise * rng.normal(size=G.shape)
+    return Observation(replace(settings, G=measured), unknowns, errors), truth
+
+
+@dataclass(frozen=True, eq=False)
+class Inverted:
+    """What an inversion has come to."""
+
+    answer: Gaussian
+    outcome: dict[str, object]
+    """`spread`, the answer's own deviation of V in meV; `excess`, `verdict`, `attempts`, `steps`,
+    `seconds`."""
+
+
+def inverted(observation: Observation, network: TrainedModel | None, index: int) -> Inverted:
+    """Invert a measurement, and take the time."""
+    begun = time.perf_counter()
+    attempts = invert(observation, network, seed=index)
+    seconds = time.perf_counter() - begun
+    chosen = best(attempts)
+    outcome: dict[str, object] = {
+        "spread": observation.unknowns.site_deviation(chosen.answer.covariance),
+        "excess": chosen.excess,
+        "verdict": verdict(observation, attempts),
+        "attempts": len(attempts),
+        "steps": sum(attempt.rounds + attempt.steps for attempt in attempts),
+        "seconds": seconds,
+    }
+    return Inverted(chosen.answer, outcome)
 
 
 def inversion_row(task: Task) -> dict[str, object]:
@@ -73,16 +109,13 @@ def inversion_row(task: Task) -> dict[str, object]:
     dict
         V errors in meV, root mean square over the sites; the errors of α in meV nm; `scaled_error`,
         the mean square error of the paper's labels in units of their variance, which is 1 − R²;
-        `spread`, the answer's own deviation of V; `deviations`, the true unknowns' distances from
-        the answer in units of its deviations; `mahalanobis`, all of them together squared.
+        `deviations`, the true unknowns' distances from the answer in units of its deviations;
+        `mahalanobis`, all of them together squared; and the outcome of `Inverted`.
     """
     observation, truth = fresh_wire(task)
     unknowns, network = observation.unknowns, network_of(task.model, task.noise)
-    begun = time.perf_counter()
-    attempts = invert(observation, network, seed=task.index)
-    seconds = time.perf_counter() - begun
-    chosen = best(attempts)
-    mean, covariance = chosen.answer.mean, chosen.answer.covariance
+    found = inverted(observation, network, task.index)
+    mean = found.answer.mean
     guess = network_labels(network, unknowns, observation.measurement.G[None])[0]
     papers = np.array([name != "mean" for name in unknowns.names])
     variance = np.diag(unknowns.prior.covariance)
@@ -92,19 +125,14 @@ def inversion_row(task: Task) -> dict[str, object]:
         "index": task.index,
         "network_error": unknowns.site_distance(guess, truth),
         "site_error": unknowns.site_distance(mean, truth),
-        "spread": unknowns.site_deviation(covariance),
         "network_scaled_error": ((guess - truth) ** 2 / variance)[papers].mean(),
         "scaled_error": ((mean - truth) ** 2 / variance)[papers].mean(),
         "network_alpha_error": abs(unknowns.alpha(guess) - unknowns.alpha(truth)),
         "alpha_error": abs(unknowns.alpha(mean) - unknowns.alpha(truth)),
-        "mahalanobis": chosen.answer.squared_distance(truth),
-        "excess": chosen.excess,
-        "verdict": verdict(observation, attempts),
-        "attempts": len(attempts),
-        "steps": sum(attempt.rounds + attempt.steps for attempt in attempts),
-        "seconds": seconds,
+        "mahalanobis": found.answer.squared_distance(truth),
+        **found.outcome,
     }
-    z = (truth - mean) / np.sqrt(np.diag(covariance))
+    z = (truth - mean) / np.sqrt(np.diag(found.answer.covariance))
     return {**rounded(row), "deviations": " ".join(f"{one:.3f}" for one in z)}
 
 

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TypeVar
 
 import pandas as pd
+from tqdm import tqdm
 
 from disorder_landscape.dataset.store import provenance
 from disorder_landscape.files import replacing, write_json
+from disorder_landscape.physics.compilation import compile_kernels
+from disorder_landscape.workers import each_result
 
 Task = TypeVar("Task")
 
@@ -33,3 +36,23 @@ def missing(tasks: Sequence[Task], table: pd.DataFrame, keys: list[str]) -> list
     """Return the tasks that the table has no row of; the keys are attributes of a task."""
     there = set(table[keys].itertuples(index=False, name=None))
     return [task for task in tasks if tuple(getattr(task, key) for key in keys) not in there]
+
+
+def complete(
+    function: Callable[[Task], dict[str, object]],
+    tasks: Sequence[Task],
+    path: Path,
+    keys: list[str],
+    command: str,
+    workers: int,
+) -> None:
+    """Carry out the tasks that a table has no row of, and write each row as it comes."""
+    table = read_rows(path, keys)
+    left = missing(tasks, table, keys)
+    compile_kernels()
+    with tqdm(total=len(tasks), initial=len(tasks) - len(left), unit=" wires") as bar:
+        for row in each_result(function, left, workers):
+            table = pd.concat([table, pd.DataFrame([row])], ignore_index=True)
+            write_rows(table, path, keys, command)
+            bar.update()
+    write_rows(table, path, keys, command)

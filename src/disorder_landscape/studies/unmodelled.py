@@ -7,14 +7,12 @@ which the inversion has not seen. Rows of the kind "nothing" count false alarms.
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
 
 from disorder_landscape.dataset.realizations import realization
-from disorder_landscape.inference.inversion import best, invert, verdict
 from disorder_landscape.inference.measurement import Measurement, empty_measurement
 from disorder_landscape.inference.observation import Observation, noise_of_channels
 from disorder_landscape.inference.posterior import predictive_p
@@ -23,7 +21,7 @@ from disorder_landscape.inference.verification import verify
 from disorder_landscape.physics.labels import AXES, CONDUCTANCES
 from disorder_landscape.physics.parameters import FloatArray, Nanowire
 from disorder_landscape.physics.transport import conductance
-from disorder_landscape.studies.inversions import SEED, network_of, rounded
+from disorder_landscape.studies.inversions import SEED, inverted, network_of, rounded
 
 NOTHING = "nothing"
 KINDS = {
@@ -116,11 +114,8 @@ def unmodelled_row(task: Task) -> dict[str, object]:
     one = realization(config, task.index)
     settings = empty_measurement(config)
     observation = Observation(measured(task, one.wire, settings, 1), unknowns, noise)
-    begun = time.perf_counter()
-    attempts = invert(observation, network, seed=task.index)
-    seconds = time.perf_counter() - begun
-    chosen = best(attempts)
-    mean = chosen.answer.mean
+    found = inverted(observation, network, task.index)
+    mean = found.answer.mean
     true, true_settings = changed(task.kind, task.index, one.wire, settings)
     change = conductances(true, true_settings) - conductances(one.wire, settings)
     other_settings = replace(
@@ -137,15 +132,10 @@ def unmodelled_row(task: Task) -> dict[str, object]:
             "index": task.index,
             "departure": float(np.sqrt((change**2).mean()) / task.noise),
             "site_error": float(np.sqrt(((unknowns.potential(mean) - true.potential) ** 2).mean())),
-            "spread": unknowns.site_deviation(chosen.answer.covariance),
             "alpha_error": abs(unknowns.alpha(mean) - one.alpha),
-            "excess": chosen.excess,
-            "verdict": verdict(observation, attempts),
             "p_controls": _p_of_controls(unknowns, mean, further, task),
-            "p_predictive": predictive_p(further, chosen.answer, rng),
-            "attempts": len(attempts),
-            "steps": sum(attempt.rounds + attempt.steps for attempt in attempts),
-            "seconds": seconds,
+            "p_predictive": predictive_p(further, found.answer, rng),
+            **found.outcome,
         }
     )
 

@@ -1,0 +1,33 @@
+"""The same measurement inverted from two starts: the network's guess, and the prior alone.
+
+If a conductance profile has one disorder landscape, both end in the same answer, whatever network
+there is. `Task` is that of `studies.inversions`.
+"""
+
+from __future__ import annotations
+
+from disorder_landscape.studies.inversions import Task, fresh_wire, inverted, network_of, rounded
+
+STARTS = ("network", "prior")
+
+
+def starts_row(task: Task) -> dict[str, object]:
+    """Invert the measurement of a fresh wire from both starts.
+
+    Returns
+    -------
+    dict
+        `apart`, the root-mean-square difference of both potentials in meV; of each start, how far
+        its answer is off, `network_error` and `prior_error`, and the outcome of `Inverted`, as
+        `network_spread`, `prior_spread` and so on.
+    """
+    observation, truth = fresh_wire(task)
+    distance = observation.unknowns.site_distance
+    networks = network_of(task.model, task.noise), None
+    found = [inverted(observation, network, task.index) for network in networks]
+    row: dict[str, object] = {"model": task.model, "noise": task.noise, "index": task.index}
+    row["apart"] = distance(found[0].answer.mean, found[1].answer.mean)
+    for start, one in zip(STARTS, found, strict=True):
+        row[f"{start}_error"] = distance(one.answer.mean, truth)
+        row |= {f"{start}_{name}": value for name, value in one.outcome.items()}
+    return rounded(row)
