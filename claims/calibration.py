@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import hashlib
+import json
 import warnings
 from pathlib import Path
 
@@ -97,7 +98,9 @@ def main() -> None:
     )
     folder = Path(__file__).resolve().parent
     parser.add_argument("-o", "--output", type=Path, default=folder / "calibration.json")
-    parser.add_argument("--chains", type=int, default=10, help="wires with a chain, per model")
+    parser.add_argument(
+        "--chains", type=int, default=10, help="wires with a chain, per model; 0 keeps those stored"
+    )
     parser.add_argument("--models", nargs="*", choices=MODELS, default=list(MODELS))
     arguments = parser.parse_args()
 
@@ -108,7 +111,10 @@ def main() -> None:
         "inversions": hashlib.sha256(INVERSIONS.read_bytes()).hexdigest(),
     }
     result = {"provenance": made, "calibration": calibration(table)}
-    result["chains"] = {model: chains(model, arguments.chains) for model in arguments.models}
+    if arguments.chains or not arguments.output.exists():
+        result["chains"] = {model: chains(model, arguments.chains) for model in arguments.models}
+    else:
+        result["chains"] = json.loads(arguments.output.read_text("utf-8"))["chains"]
     write_json(arguments.output, result)
 
 

@@ -8,10 +8,10 @@ from contextlib import contextmanager
 from tqdm import tqdm
 
 from disorder_landscape.inference.inversion import Told
-from disorder_landscape.inference.smoother import SmootherSettings, Step
+from disorder_landscape.inference.smoother import Step
 
 USUAL_STEPS = 7
-"""Steps that most inversions take: what the time left is estimated from."""
+"""Steps that most inversions from a guess take: what the time left is estimated from."""
 
 
 @contextmanager
@@ -20,8 +20,7 @@ def inference_progress() -> Iterator[Told]:
     with tqdm(total=USUAL_STEPS, unit=" steps", desc="infer", delay=1) as bar:
 
         def told(attempt: int, number: int, step: Step) -> None:
-            most = attempt * USUAL_STEPS + max(USUAL_STEPS, number + 2)
-            bar.total = min(most, (attempt + 1) * SmootherSettings.steps)
+            bar.total = bar.n + max(USUAL_STEPS - number, 2)
             spread = f"spread {1e3 * step.spread:.3g} µeV"
             bar.set_postfix_str(f"attempt {attempt + 1}, misfit {step.misfit:.5f} e²/h, {spread}")
             bar.update()
