@@ -84,7 +84,7 @@ def draw(table: pd.DataFrame, path: Path) -> None:
             quantiles, cdf=uniform.cdf, difference=True, confidence_bands="auto", ci_prob=0.95,
             ax=panel, eval_points=np.linspace(0, 1, 101),
         )  # fmt: skip
-        panel.set_title(f"{str(model).split('_')[0]} components, {noise:g} $e^2/h$", fontsize=8)
+        panel.set_title(f"{str(model).split('_')[0]} components\n{noise:g} $e^2/h$", fontsize=8)
         panel.set_xlabel("quantile of the truth", fontsize=8)
     panels[0][0].set_ylabel("ECDF − uniform", fontsize=8)
     with replacing(path) as temporary:
