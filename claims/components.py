@@ -6,26 +6,20 @@ on. Example: python claims/components.py --components 15 --wires 4
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
 
 from disorder_landscape.studies.components import KEYS, Task, components_row
-from disorder_landscape.studies.rows import complete
+from disorder_landscape.studies.rows import complete, study_parser
 
 COMMAND = "python claims/components.py"
 
 
 def main() -> None:
     """Carry out what is missing."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    folder = Path(__file__).resolve().parent
-    parser.add_argument("-o", "--output", type=Path, default=folder / "components.csv")
+    output = Path(__file__).resolve().parent / "components.csv"
+    parser = study_parser(__doc__, output, [0.01])
     parser.add_argument("--components", nargs="+", type=int, default=[15, 20, 30])
-    parser.add_argument("--noise", nargs="+", type=float, default=[0.01])
     parser.add_argument("--wires", type=int, default=4)
-    parser.add_argument("--workers", type=int, default=2)
     arguments = parser.parse_args()
 
     tasks = [

@@ -6,36 +6,25 @@ on. Example: python claims/inversion.py --noise 0 0.01 --wires 50
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
 
 from disorder_landscape.chain import MODELS
-from disorder_landscape.studies.inversions import KEYS, Task, inversion_row
+from disorder_landscape.studies.inversions import KEYS, inversion_row, tasks_of
 from disorder_landscape.studies.noise import NOISE
-from disorder_landscape.studies.rows import complete
+from disorder_landscape.studies.rows import complete, study_parser
 
 COMMAND = "python claims/inversion.py"
 
 
 def main() -> None:
     """Carry out what is missing."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    folder = Path(__file__).resolve().parent
-    parser.add_argument("-o", "--output", type=Path, default=folder / "inversions.csv")
+    output = Path(__file__).resolve().parent / "inversions.csv"
+    parser = study_parser(__doc__, output, NOISE)
     parser.add_argument("--models", nargs="+", choices=MODELS, default=list(MODELS))
-    parser.add_argument("--noise", nargs="+", type=float, default=list(NOISE))
     parser.add_argument("--wires", type=int, default=200)
-    parser.add_argument("--workers", type=int, default=2)
     arguments = parser.parse_args()
 
-    tasks = [
-        Task(model, noise, index)
-        for index in range(arguments.wires)
-        for noise in arguments.noise
-        for model in arguments.models
-    ]
+    tasks = tasks_of(arguments.models, arguments.noise, arguments.wires)
     complete(inversion_row, tasks, arguments.output, KEYS, COMMAND, arguments.workers)
 
 

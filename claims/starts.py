@@ -6,12 +6,11 @@ Example: python claims/starts.py --models five_components_and_alpha --wires 10
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
 
 from disorder_landscape.chain import MODELS
-from disorder_landscape.studies.inversions import KEYS, Task
-from disorder_landscape.studies.rows import complete
+from disorder_landscape.studies.inversions import KEYS, tasks_of
+from disorder_landscape.studies.rows import complete, study_parser
 from disorder_landscape.studies.starts import starts_row
 
 COMMAND = "python claims/starts.py"
@@ -19,23 +18,13 @@ COMMAND = "python claims/starts.py"
 
 def main() -> None:
     """Carry out what is missing."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    folder = Path(__file__).resolve().parent
-    parser.add_argument("-o", "--output", type=Path, default=folder / "starts.csv")
+    output = Path(__file__).resolve().parent / "starts.csv"
+    parser = study_parser(__doc__, output, [0.01])
     parser.add_argument("--models", nargs="+", choices=MODELS, default=list(MODELS))
-    parser.add_argument("--noise", nargs="+", type=float, default=[0.01])
     parser.add_argument("--wires", type=int, default=20)
-    parser.add_argument("--workers", type=int, default=2)
     arguments = parser.parse_args()
 
-    tasks = [
-        Task(model, noise, index)
-        for index in range(arguments.wires)
-        for noise in arguments.noise
-        for model in arguments.models
-    ]
+    tasks = tasks_of(arguments.models, arguments.noise, arguments.wires)
     complete(starts_row, tasks, arguments.output, KEYS, COMMAND, arguments.workers)
 
 

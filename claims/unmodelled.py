@@ -7,11 +7,10 @@ Example: python claims/unmodelled.py --noise 0.01 --kinds gap nothing
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
 
 from disorder_landscape.chain import FIVE, MODELS
-from disorder_landscape.studies.rows import complete
+from disorder_landscape.studies.rows import complete, study_parser
 from disorder_landscape.studies.unmodelled import KEYS, KINDS, NOTHING, Task, unmodelled_row
 
 COMMAND = "python claims/unmodelled.py"
@@ -21,15 +20,10 @@ WIRES, GOOD = 17, 100
 
 def main() -> None:
     """Carry out what is missing."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    folder = Path(__file__).resolve().parent
-    parser.add_argument("-o", "--output", type=Path, default=folder / "unmodelled.csv")
+    output = Path(__file__).resolve().parent / "unmodelled.csv"
+    parser = study_parser(__doc__, output, [0.01])
     parser.add_argument("--models", nargs="+", choices=MODELS, default=[FIVE])
-    parser.add_argument("--noise", nargs="+", type=float, default=[0.01])
     parser.add_argument("--kinds", nargs="+", choices=list(KINDS), default=list(KINDS))
-    parser.add_argument("--workers", type=int, default=2)
     arguments = parser.parse_args()
 
     tasks = [

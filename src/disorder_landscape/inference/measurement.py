@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,7 +14,8 @@ from disorder_landscape.arguments import ArgumentError, grid_in, number_in, requ
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.physics.hamiltonian import FULL_TURN
 from disorder_landscape.physics.labels import AXES, CONDUCTANCES
-from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.physics.parameters import FloatArray, Nanowire
+from disorder_landscape.physics.transport import conductance
 
 QUANTUM = e**2 / h
 """e²/h in S."""
@@ -55,6 +56,18 @@ def empty_measurement(config: DatasetConfig) -> Measurement:
     """Return a measurement on a dataset's grid and at its settings, all conductances zero."""
     G = np.zeros((config.mu_points, config.B_points, len(config.bias), len(CONDUCTANCES)))
     return Measurement(G, config.mu, config.B, np.array(config.bias), **settings_of(config))
+
+
+def simulated(wires: Nanowire | Sequence[Nanowire], at: Measurement) -> FloatArray:
+    """Return the conductances of wires, with their own barriers, at a measurement's other settings.
+
+    Returns
+    -------
+    array, shape ([wire,] mu, B, bias, channel)
+        In e²/h.
+    """
+    G = conductance(wires, at.mu, at.B, at.bias, at.temperature, theta=at.theta)
+    return np.stack([G[name].to_numpy() for name in CONDUCTANCES], axis=-1)
 
 
 def measurement_of(

@@ -9,12 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from disorder_landscape.arguments import number_in, require
-from disorder_landscape.inference.measurement import Measurement
+from disorder_landscape.inference.measurement import Measurement, simulated
 from disorder_landscape.inference.unknowns import Unknowns
 from disorder_landscape.physics.finite_temperature import TOLERANCE
 from disorder_landscape.physics.labels import CONDUCTANCES
 from disorder_landscape.physics.parameters import FloatArray
-from disorder_landscape.physics.transport import conductance
 
 SOLVER_ERROR = TOLERANCE
 """In e²/h: what the simulation is exact to, below which no noise can be told from none."""
@@ -80,10 +79,7 @@ class Observation:
 
     def conductances(self, X: FloatArray) -> FloatArray:
         """Return conductances of members in e²/h, shape (member, mu, B, bias, channel)."""
-        m = self.measurement
-        wires = self.unknowns.wires(X, m.barrier)
-        G = conductance(wires, m.mu, m.B, m.bias, m.temperature, theta=m.theta)
-        return np.stack([G[name].to_numpy() for name in CONDUCTANCES], axis=-1)
+        return simulated(self.unknowns.wires(X, self.measurement.barrier), self.measurement)
 
     def misfit(self, y: FloatArray) -> FloatArray:
         """Return root-mean-square misfits in e²/h, shape (channel,); NaN without data."""

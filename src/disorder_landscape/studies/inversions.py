@@ -8,6 +8,7 @@ table.
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -41,6 +42,11 @@ class Task:
     model: str
     noise: float
     index: int
+
+
+def tasks_of(models: Sequence[str], noise: Sequence[float], wires: int) -> list[Task]:
+    """Return the inversions of as many wires of each model at each noise, wire by wire."""
+    return [Task(model, one, index) for index in range(wires) for one in noise for model in models]
 
 
 def network_of(model: str, noise: float) -> TrainedModel:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import hashlib
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -36,6 +37,27 @@ def missing(tasks: Sequence[Task], table: pd.DataFrame, keys: list[str]) -> list
     """Return the tasks that the table has no row of; the keys are attributes of a task."""
     there = set(table[keys].itertuples(index=False, name=None))
     return [task for task in tasks if tuple(getattr(task, key) for key in keys) not in there]
+
+
+def study_parser(doc: str | None, output: Path, noise: Sequence[float]) -> argparse.ArgumentParser:
+    """Return the command line of a study that `complete` carries out: where, at which noise, how.
+
+    Parameters
+    ----------
+    doc : str, optional
+        The script's own, for --help.
+    output : Path
+        The table, if none is named.
+    noise : sequence of float
+        In e²/h, if none is named.
+    """
+    parser = argparse.ArgumentParser(
+        description=doc, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("-o", "--output", type=Path, default=output)
+    parser.add_argument("--noise", nargs="+", type=float, default=list(noise))
+    parser.add_argument("--workers", type=int, default=2)
+    return parser
 
 
 def complete(

@@ -13,14 +13,13 @@ import numpy as np
 import xarray as xr
 
 from disorder_landscape.dataset.realizations import realization
-from disorder_landscape.inference.measurement import Measurement, empty_measurement
+from disorder_landscape.inference.measurement import Measurement, empty_measurement, simulated
 from disorder_landscape.inference.observation import Observation, noise_of_channels
 from disorder_landscape.inference.posterior import predictive_p
 from disorder_landscape.inference.unknowns import Unknowns
 from disorder_landscape.inference.verification import verify
 from disorder_landscape.physics.labels import AXES, CONDUCTANCES
 from disorder_landscape.physics.parameters import FloatArray, Nanowire
-from disorder_landscape.physics.transport import conductance
 from disorder_landscape.studies.inversions import SEED, inverted, network_of, rounded
 
 NOTHING = "nothing"
@@ -84,18 +83,15 @@ def changed(
             return wire, settings
 
 
-def measured(task: Task, wire: Nanowire, settings: Measurement, part: int) -> Measurement:
-    """Return what is measured at the settings, with errors, as somebody believes who knows less."""
-    true, true_settings = changed(task.kind, task.index, wire, settings)
-    G = conductances(true, true_settings)
+def true_conductances(task: Task, wire: Nanowire, settings: Measurement) -> FloatArray:
+    """Return what there is to measure, shape (mu, B, bias, channel), in e²/h."""
+    return simulated(*changed(task.kind, task.index, wire, settings))
+
+
+def measured(task: Task, G: FloatArray, settings: Measurement, part: int) -> Measurement:
+    """Return conductances with errors, at the settings as somebody believes who knows less."""
     rng = np.random.default_rng([SEED, task.index, part])
     return replace(settings, G=G + task.noise * rng.normal(size=G.shape))
-
-
-def conductances(wire: Nanowire, at: Measurement) -> FloatArray:
-    """Return those of a wire in e²/h, shape (mu, B, bias, channel)."""
-    G = conductance(wire, at.mu, at.B, at.bias, at.temperature, theta=at.theta)
-    return np.stack([G[name].to_numpy() for name in CONDUCTANCES], axis=-1)
 
 
 def unmodelled_row(task: Task) -> dict[str, object]:
@@ -113,16 +109,18 @@ def unmodelled_row(task: Task) -> dict[str, object]:
     unknowns, noise = Unknowns(config), noise_of_channels(task.noise)
     one = realization(config, task.index)
     settings = empty_measurement(config)
-    observation = Observation(measured(task, one.wire, settings, 1), unknowns, noise)
+    G = true_conductances(task, one.wire, settings)
+    observation = Observation(measured(task, G, settings, 1), unknowns, noise)
     found = inverted(observation, network, task.index)
     mean = found.answer.mean
-    true, true_settings = changed(task.kind, task.index, one.wire, settings)
-    change = conductances(true, true_settings) - conductances(one.wire, settings)
+    true, _ = changed(task.kind, task.index, one.wire, settings)
+    change = G - simulated(one.wire, settings)
     other_settings = replace(
         settings, mu=config.mu[::EVERY], B=config.B[::EVERY], barrier=OTHER_BARRIERS
     )
     other_wire = replace(one.wire, barrier=OTHER_BARRIERS)
-    further = Observation(measured(task, other_wire, other_settings, 3), unknowns, noise)
+    other_G = true_conductances(task, other_wire, other_settings)
+    further = Observation(measured(task, other_G, other_settings, 3), unknowns, noise)
     rng = np.random.default_rng([SEED, task.index, 4])
     return rounded(
         {
