@@ -90,7 +90,7 @@ def test_simulate_draws_the_same_potential_for_the_same_seed(monkeypatch, capsys
         (["--potential", "foreign.nc"], "lacks potential"),
         (["--potential", "short.csv", "--seed", "1"], "both are given"),
         (["--plot", "picture.xyz"], "Argument plot must end in one of"),
-        (["--plot", "x.png", "--output", "x.png"], "be another file than the output"),
+        (["--output", "x.png"], "Argument output must be a netCDF file, named ….nc, but it is"),
         (["--output", "words.csv/x.nc"], "Argument output must be a file in a folder that can be"),
         (["--output", "."], "Argument output must be a file in a folder that can be written"),
     ],

@@ -88,15 +88,14 @@ def simulate(
 
     from disorder_landscape import simulation
     from disorder_landscape.dataset.store import provenance, write_dataset
-    from disorder_landscape.files import check_writable
+    from disorder_landscape.files import check_netcdf, check_writable
     from disorder_landscape.physics.disorder import disorder_realization
     from disorder_landscape.physics.parameters import Nanowire
 
-    check_writable("output", output)
+    check_netcdf("output", output)
     if plot is not None:
         simulation.check_plot(plot)
         check_writable("plot", plot)
-        require(plot != output, "plot", "be another file than the output", f"both are '{plot}'")
     both = "one of --potential and --seed at most"
     require(potential is None or seed is None, "potential", f"come with {both}", "both are given")
     require(sites >= 2, "sites", "be 2 or more", f"it is {sites}")
@@ -208,11 +207,11 @@ def predict(
     Example: landscape predict wire.nc --model data_small/models/five_components_and_alpha -o Y.nc
     """
     from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
-    from disorder_landscape.files import check_writable
+    from disorder_landscape.files import check_netcdf
     from disorder_landscape.learning.prediction import predict as predict_labels
     from disorder_landscape.physics.labels import CONDUCTANCES
 
-    check_writable("output", output)
+    check_netcdf("output", output)
     same = output.resolve() == measurement.resolve()
     require(not same, "output", "be another file than the measurement", f"both are '{output}'")
     Y = predict_labels(model, read_dataset(measurement, CONDUCTANCES)[list(CONDUCTANCES)])
@@ -249,7 +248,7 @@ def infer(
     --noise 0.01 -o inferred.nc --plot inferred.png
     """
     from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
-    from disorder_landscape.files import check_writable
+    from disorder_landscape.files import check_netcdf, check_writable
     from disorder_landscape.inference.infer import infer as find
     from disorder_landscape.inference.measurement import measurement_of
     from disorder_landscape.inference.plot import plot_inference
@@ -258,7 +257,7 @@ def infer(
     from disorder_landscape.learning.model import load_model_config
     from disorder_landscape.simulation import check_plot
 
-    check_writable("output", output)
+    check_netcdf("output", output)
     same = output.resolve() == measurement.resolve()
     require(not same, "output", "be another file than the measurement", f"both are '{output}'")
     if plot is not None:
@@ -275,6 +274,7 @@ def infer(
             measured, model, errors, not from_prior, members, seed, None, unfinished, told
         )
     write_dataset(result, output, provenance(" ".join(["landscape", *sys.argv[1:]])))
+    unfinished.unlink(missing_ok=True)
     if plot is not None:
         usual = {name: result.attrs[name] for name in ("theta", "barrier", "temperature")}
         plot_inference(result, measurement_of(measured, usual, complete=False), plot)
@@ -313,7 +313,7 @@ def verify(
     from tqdm import tqdm
 
     from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
-    from disorder_landscape.files import check_writable
+    from disorder_landscape.files import check_netcdf
     from disorder_landscape.inference.verdict import table
     from disorder_landscape.inference.verification import verify as compare
     from disorder_landscape.learning.model import load_model_config
@@ -321,7 +321,7 @@ def verify(
     from disorder_landscape.simulation import parse_grid
 
     if output is not None:
-        check_writable("output", output)
+        check_netcdf("output", output)
         read = {path.resolve() for path in (prediction, *measurements)}
         must = "be another file than those that are read"
         require(output.resolve() not in read, "output", must, f"it is '{output}'")

@@ -50,6 +50,12 @@ def check_writable(name: str, path: Path) -> None:
     require(usable, name, must, f"it is '{path}'")
 
 
+def check_netcdf(name: str, path: Path) -> None:
+    """Raise an ArgumentError where a netCDF file could not be written, or has another's name."""
+    check_writable(name, path)
+    require(path.suffix == ".nc", name, "be a netCDF file, named ….nc", f"it is '{path}'")
+
+
 def _remove(path: Path) -> None:
     if path.is_dir():
         shutil.rmtree(path)

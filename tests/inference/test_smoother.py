@@ -1,6 +1,6 @@
 """Smoother, polish and Markov chain on problems whose posterior is known."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pytest
@@ -9,7 +9,13 @@ from scipy.stats import kstest
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.inference.approach import ApproachSettings, approach, regress_on_data
 from disorder_landscape.inference.checkpoint import Checkpoint
-from disorder_landscape.inference.inversion import chi_square_excess
+from disorder_landscape.inference.inversion import (
+    NOT_CONVERGED,
+    NOT_DESCRIBED,
+    Attempt,
+    chi_square_excess,
+    verdict,
+)
 from disorder_landscape.inference.observation import Observation, noise_of_channels
 from disorder_landscape.inference.polish import linearise, polish
 from disorder_landscape.inference.posterior import independence_chain, predictive_p
@@ -106,6 +112,16 @@ def test_rounds_lead_from_the_prior_to_the_truth(seed):
     assert found.squared_distance(truth) < 3 * SIZE
     *_, last = smooth(waves, found, [0], SETTINGS)
     assert last.distribution.squared_distance(truth) < 3 * SIZE
+
+
+def test_rounds_that_lead_nowhere_end(linear):
+    """What nobody could learn from: data of waves far shorter than the prior is wide."""
+    waves = Linear(linear.data, 100 * linear.slope, bend=2.0)
+    settings = ApproachSettings(patience=2)
+    left = [step.unexplained for step in approach(waves, UNKNOWNS.prior, [0], settings)]
+    assert len(left) < settings.rounds
+    assert min(left) > settings.unexplained
+    assert int(np.argmin(left)) == len(left) - 1 - settings.patience
 
 
 def test_rounds_on_lines_do_not_count_data_twice(linear):
@@ -223,9 +239,10 @@ def test_steps_and_checkpoints_survive_json(linear, tmp_path):
     assert len(again) == 1
     read = Step.from_dict(again.recall("step", lambda: pytest.fail("calculated again")))
     np.testing.assert_array_equal(read.distribution.covariance, step.distribution.covariance)
-    assert len(Checkpoint(path, b"another run")) == 0
-    again.remove()
-    assert not path.exists()
+    other = Checkpoint(path, b"another run")
+    assert len(other) == 0
+    other.recall("step", step.to_dict)
+    assert [len(Checkpoint(path, run)) for run in (b"run", b"another run")] == [1, 1]
 
 
 def test_excess_looks_at_each_channel():
@@ -236,6 +253,26 @@ def test_excess_looks_at_each_channel():
     assert chi_square_excess(Channels, squares) == pytest.approx(0.0)
     squares[:100] = 2.0  # one channel is off
     assert chi_square_excess(Channels, squares) == pytest.approx(100 / np.sqrt(200))
+
+
+@pytest.mark.parametrize(
+    ("misfits", "expected"),
+    [((2.0, 2.05), NOT_DESCRIBED), ((2.3, 2.0), NOT_CONVERGED), ((1.0, 2.0), NOT_CONVERGED)],
+)
+def test_answers_that_are_equally_bad_say_that_the_model_is(linear, misfits, expected):
+    """… and one that fits does not, but data as noisy as these need a second that agrees."""
+    noisy = replace(linear, variance=np.full(40, 1.0))
+    attempts = [
+        Attempt(
+            answer=Gaussian(far * np.ones(SIZE), 1e-6 * np.eye(SIZE)),
+            data=noisy.data + misfit,
+            objective=40 * misfit**2,
+            excess=(misfit**2 - 1) * np.sqrt(20),
+            steps=5,
+        )
+        for far, misfit in enumerate(misfits)
+    ]
+    assert verdict(noisy, attempts) == expected
 
 
 def test_noise_by_channel():

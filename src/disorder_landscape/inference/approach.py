@@ -44,7 +44,9 @@ class ApproachSettings:
     least_shrinking: float = 0.35
     """A round makes no direction's deviation smaller than this part of what it was."""
     unexplained: float = 1.0
-    """Done when lines through the conductances leave less unexplained than the noise."""
+    """Done when lines through the conductances leave less unexplained than the noise, …"""
+    patience: int = 8
+    """… or when what they leave has not become less in so many rounds: these lead nowhere."""
     rounds: int = 30
 
 
@@ -55,16 +57,18 @@ def approach(
     settings: ApproachSettings,
     recall: Recall = lambda name, calculate: calculate(),
 ) -> Iterator[Step]:
-    """Yield round after round, until the smoother can go on or there are `settings.rounds`.
+    """Yield round after round, until the smoother can go on or rounds no longer help.
 
     Each is a function of the one before and of (seed, number of the round).
     """
-    distribution = start
+    distribution, least, least_at = start, np.inf, 0
     for number in range(settings.rounds):
         make = partial(_round, observation, distribution, [*seed, number], settings)
         step = Step.from_dict(recall(f"approach.{'.'.join(map(str, seed))}.{number}", make))
         yield step
-        if step.unexplained < settings.unexplained:
+        if step.unexplained < least:
+            least, least_at = step.unexplained, number
+        if least < settings.unexplained or number - least_at >= settings.patience:
             return
         distribution = step.distribution
 
@@ -130,8 +134,8 @@ def regress_on_data(
     """
     scale = COMPRESSION[observation.channel]
     compressed = np.arcsinh(shown / scale)
-    # as if with the experiment's errors at least, as in `InputScaler`
-    deviation = np.sqrt(compressed.var(axis=0) + (NOISE_FLOOR / scale) ** 2)
+    # in units of what lines through the members leave, with the experiment's errors at least
+    deviation = np.sqrt(regression(z, compressed)[3] + (NOISE_FLOOR / scale) ** 2)
     ridge = RidgeCV(
         alphas=shown.shape[1] * np.logspace(-5, 1, 13),
         scoring="neg_mean_squared_error",

@@ -18,22 +18,20 @@ class Checkpoint:
     Parameters
     ----------
     path : Path, optional
-        The file; None keeps nothing. What another run has left there is ignored.
+        The file; None keeps nothing. What other runs have left there stays.
     fingerprint : bytes
         Everything that the results depend on.
     """
 
     def __init__(self, path: Path | None = None, fingerprint: bytes = b"") -> None:
         self.path = path
-        self._run = hashlib.sha256(fingerprint).hexdigest()
-        self._known: dict[str, Any] = {}
+        self._runs: dict[str, dict[str, Any]] = {}
         if path is not None and path.exists():
-            content = read_json(path, "checkpoint", _MUST)
-            if content.get("run") == self._run:
-                self._known = dict(content["results"])
+            self._runs = read_json(path, "checkpoint", _MUST)
+        self._known = self._runs.setdefault(hashlib.sha256(fingerprint).hexdigest(), {})
 
     def __len__(self) -> int:
-        """How many results there are."""
+        """How many results of this run there are."""
         return len(self._known)
 
     def recall(self, name: str, calculate: Callable[[], dict[str, Any]]) -> dict[str, Any]:
@@ -41,10 +39,5 @@ class Checkpoint:
         if name not in self._known:
             self._known[name] = calculate()
             if self.path is not None:
-                write_json(self.path, {"run": self._run, "results": self._known})
+                write_json(self.path, self._runs)
         return dict(self._known[name])
-
-    def remove(self) -> None:
-        """Delete the file, when the result is safe."""
-        if self.path is not None:
-            self.path.unlink(missing_ok=True)

@@ -72,7 +72,7 @@ def infer(
     seed : int
     settings : InversionSettings, optional
     checkpoint : Path, optional
-        File through which an interrupted run goes on; deleted in the end.
+        File through which an interrupted run goes on. It is not deleted: the result is not saved.
     told : callable, optional
         Told the number of the attempt, the number of the step and the step.
 
@@ -92,9 +92,10 @@ def infer(
         If the measurement is on another grid than the network's, not one wire's or in siemens, if
         the noise is negative, or another argument is out of range.
     """
-    config = (
+    whole_config = (
         model.config if isinstance(model, TrainedModel) else load_model_config(Path(model))
-    ).dataset
+    )
+    config = whole_config.dataset
     measurement = measurement_of(G, settings_of(config), complete=False)
     errors = noise_of_channels(noise)
     members = int(number_in("members", members, 2, 10_000))
@@ -109,7 +110,7 @@ def infer(
     start = "the prior" if trained is None else "the network's guess"
     if network and not whole:
         start += ", because the network needs all conductances and some are missing"
-    fingerprint = repr((config.hash, errors.tolist(), seed, settings, start, measurement))
+    fingerprint = repr((whole_config, errors.tolist(), seed, settings, start, measurement))
     notes = Checkpoint(checkpoint, fingerprint.encode() + measurement.G.tobytes())
     attempts = invert(observation, trained, seed, settings, told, notes)
     chosen = best(attempts)
@@ -126,7 +127,6 @@ def infer(
         "theta": measurement.theta,
         "config_hash": config.hash,
     }
-    notes.remove()
     return result
 
 

@@ -36,6 +36,9 @@ PROMPT = 9
 lost their way more. Otherwise a second attempt must agree."""
 SAME_ANSWER = 3.0
 """Two optima are the same where their V are closer than this many of their own deviations."""
+SAME_MISFIT = 0.05
+"""Two misfits are the same that differ by less than this part. If the best that can be found is
+twice found to be so bad, in different places even, then it is the model that does no better."""
 
 
 @dataclass(frozen=True)
@@ -178,16 +181,17 @@ def verdict(observation: Observation, attempts: list[Attempt]) -> str:
     """Say what became of it.
 
     An answer that explains the data has converged, if a wrong one could not or another attempt
-    agrees. Where none explains the data but attempts agree on one, it is the model that cannot;
-    where they do not agree either, a better answer may have been missed.
+    agrees. Where none explains the data but attempts agree on one, or on how far off the best of
+    them are, it is the model that cannot; where they do not agree either, a better answer may have
+    been missed.
     """
     chosen = best(attempts)
-    agreed = any(
-        same_answer(observation, chosen, other) for other in attempts if other is not chosen
-    )
+    others = [attempt for attempt in attempts if attempt is not chosen]
+    agreed = any(same_answer(observation, chosen, other) for other in others)
     if chosen.fits:
         return CONVERGED if agreed or is_surely_right(observation, chosen) else NOT_CONVERGED
-    return NOT_DESCRIBED if agreed else NOT_CONVERGED
+    as_bad = any(same_misfit(observation, chosen, other) for other in others)
+    return NOT_DESCRIBED if agreed or as_bad else NOT_CONVERGED
 
 
 def is_surely_right(observation: Observation, attempt: Attempt) -> bool:
@@ -201,6 +205,16 @@ def is_surely_right(observation: Observation, attempt: Attempt) -> bool:
 def same_answer(observation: Observation, one: Attempt, other: Attempt) -> bool:
     """Return whether two attempts have ended in the same optimum."""
     unknowns = observation.unknowns
-    scatter = np.sqrt(max(1.0, float(squared_misfits(observation, one.data).mean())))
+    scatter = max(1.0, _misfit(observation, one))
     near = SAME_ANSWER * scatter * unknowns.site_deviation(one.answer.covariance)
     return bool(unknowns.site_distance(other.answer.mean, one.answer.mean) < near)
+
+
+def same_misfit(observation: Observation, one: Attempt, other: Attempt) -> bool:
+    """Return whether two attempts are equally far off the data."""
+    least, most = sorted(_misfit(observation, attempt) for attempt in (one, other))
+    return most < (1 + SAME_MISFIT) * least
+
+
+def _misfit(observation: Observation, attempt: Attempt) -> float:
+    return float(np.sqrt(squared_misfits(observation, attempt.data).mean()))
