@@ -33,10 +33,12 @@ from disorder_landscape.physics.parameters import FloatArray
 class ApproachSettings:
     """How the rounds go about it."""
 
-    members_per_unknown: float = 40.0
-    """Wires that are simulated in each round, for each unknown."""
+    members_per_unknown: float = 20.0
+    """Wires that are simulated in each round, for each unknown, …"""
+    least_members: int = 200
+    """… and of how many there are at least."""
     share: float = 0.25
-    """Of the data, drawn anew for each round."""
+    """Of the data, the same in all rounds."""
     wider: float = 1.2
     """The next round's wires are drawn this much more widely than the answer says, …"""
     farther: float = 4.0
@@ -61,9 +63,10 @@ def approach(
 
     Each is a function of the one before and of (seed, number of the round).
     """
+    part = observation.on_some_lines(settings.share, np.random.default_rng(seed))
     distribution, least, least_at = start, np.inf, 0
     for number in range(settings.rounds):
-        make = partial(_round, observation, distribution, [*seed, number], settings)
+        make = partial(_round, part, distribution, [*seed, number], settings)
         step = Step.from_dict(recall(f"approach.{'.'.join(map(str, seed))}.{number}", make))
         yield step
         if step.unexplained < least:
@@ -80,8 +83,7 @@ def _round(
     settings: ApproachSettings,
 ) -> dict[str, Any]:
     rng = np.random.default_rng([*seed, 1])
-    part = observation.on_some_lines(settings.share, rng)
-    return approach_round(part, distribution, rng, settings).to_dict()
+    return approach_round(observation, distribution, rng, settings).to_dict()
 
 
 def approach_round(
@@ -93,7 +95,7 @@ def approach_round(
     """Draw members, simulate them with errors, and regress the unknowns on what they show."""
     unknowns, prior = observation.unknowns, observation.unknowns.prior
     root = np.linalg.cholesky(proposal.covariance)
-    members = round(settings.members_per_unknown * prior.mean.size)
+    members = max(settings.least_members, round(settings.members_per_unknown * prior.mean.size))
     z = rng.normal(size=(members, prior.mean.size))
     X = proposal.mean + z @ root.T
     Y = observation.simulate(X)
