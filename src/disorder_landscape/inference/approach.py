@@ -41,8 +41,10 @@ class ApproachSettings:
     """Of the data, the same in all rounds."""
     wider: float = 1.2
     """The next round's wires are drawn this much more widely than the answer says, …"""
+    nearer: float = 0.75
     farther: float = 4.0
-    """… and as much more as the data lie outside this round's, up to this factor in variance."""
+    """… and as much more, or less, as the data lie farther out than this round's members, or nearer
+    to the middle; between these factors in variance."""
     least_shrinking: float = 0.35
     """A round makes no direction's deviation smaller than this part of what it was."""
     unexplained: float = 1.0
@@ -105,11 +107,12 @@ def approach_round(
     share, directions = np.linalg.eigh(error)
     share = np.clip(share, settings.least_shrinking**2, 1 - 1e-3)
     error = (directions * share) @ directions.T
-    # members' own answers have the variance 1 − error: data that lie farther out were not foreseen
-    outside = float(np.clip((at**2).mean() / (1 - share).mean(), 1.0, settings.farther))
+    # members' own answers have the variance 1 − error: do the data lie as far out as these?
+    outside = (at**2).mean() / (1 - share).mean()
+    widening = settings.wider**2 * float(np.clip(outside, settings.nearer, settings.farther))
     learned = Gaussian(proposal.mean + root @ at, root @ error @ root.T)
     answer = _upon_the_prior(learned, proposal, prior)
-    wider = Gaussian(answer.mean, answer.covariance * settings.wider**2 * outside)
+    wider = Gaussian(answer.mean, answer.covariance * widening)
     spread = unknowns.site_deviation(wider.covariance)
     step = np.linalg.solve(root, answer.mean - proposal.mean)
     return Step(
