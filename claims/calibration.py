@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import argparse
 import hashlib
-import json
 import warnings
 from pathlib import Path
 
@@ -22,7 +21,7 @@ from tqdm import tqdm
 from disorder_landscape.chain import MODELS
 from disorder_landscape.claims.inversions import COVERAGE, INVERSIONS, coverage, deviations
 from disorder_landscape.dataset.store import provenance
-from disorder_landscape.files import replacing, write_json
+from disorder_landscape.files import read_json, replacing, write_json
 from disorder_landscape.inference.inversion import best, invert
 from disorder_landscape.inference.posterior import independence_chain
 from disorder_landscape.studies.inversions import Task, fresh_wire, network_of
@@ -114,7 +113,7 @@ def main() -> None:
     if arguments.chains or not arguments.output.exists():
         result["chains"] = {model: chains(model, arguments.chains) for model in arguments.models}
     else:
-        result["chains"] = json.loads(arguments.output.read_text("utf-8"))["chains"]
+        result["chains"] = read_json(arguments.output, "output", "be of an earlier run")["chains"]
     write_json(arguments.output, result)
 
 

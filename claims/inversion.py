@@ -8,10 +8,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from disorder_landscape.chain import MODELS
-from disorder_landscape.studies.inversions import KEYS, inversion_row, tasks_of
+from disorder_landscape.studies.inversions import carry_out, inversion_row
 from disorder_landscape.studies.noise import NOISE
-from disorder_landscape.studies.rows import complete, study_parser
 
 COMMAND = "python claims/inversion.py"
 
@@ -19,13 +17,7 @@ COMMAND = "python claims/inversion.py"
 def main() -> None:
     """Carry out what is missing."""
     output = Path(__file__).resolve().parent / "inversions.csv"
-    parser = study_parser(__doc__, output, NOISE)
-    parser.add_argument("--models", nargs="+", choices=MODELS, default=list(MODELS))
-    parser.add_argument("--wires", type=int, default=200)
-    arguments = parser.parse_args()
-
-    tasks = tasks_of(arguments.models, arguments.noise, arguments.wires)
-    complete(inversion_row, tasks, arguments.output, KEYS, COMMAND, arguments.workers)
+    carry_out(inversion_row, __doc__, output, NOISE, 200, COMMAND)
 
 
 if __name__ == "__main__":

@@ -8,9 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from disorder_landscape.chain import MODELS
-from disorder_landscape.studies.inversions import KEYS, tasks_of
-from disorder_landscape.studies.rows import complete, study_parser
+from disorder_landscape.studies.inversions import carry_out
 from disorder_landscape.studies.starts import starts_row
 
 COMMAND = "python claims/starts.py"
@@ -19,13 +17,7 @@ COMMAND = "python claims/starts.py"
 def main() -> None:
     """Carry out what is missing."""
     output = Path(__file__).resolve().parent / "starts.csv"
-    parser = study_parser(__doc__, output, [0.01])
-    parser.add_argument("--models", nargs="+", choices=MODELS, default=list(MODELS))
-    parser.add_argument("--wires", type=int, default=20)
-    arguments = parser.parse_args()
-
-    tasks = tasks_of(arguments.models, arguments.noise, arguments.wires)
-    complete(starts_row, tasks, arguments.output, KEYS, COMMAND, arguments.workers)
+    carry_out(starts_row, __doc__, output, [0.01], 20, COMMAND)
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ table.
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -16,16 +16,17 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from disorder_landscape.chain import shipped_model
+from disorder_landscape.chain import MODELS, shipped_model
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.inference.first_guess import network_labels
 from disorder_landscape.inference.inversion import best, invert, verdict
-from disorder_landscape.inference.measurement import empty_measurement
+from disorder_landscape.inference.measurement import Measurement, empty_measurement
 from disorder_landscape.inference.observation import Observation, noise_of_channels
 from disorder_landscape.inference.unknowns import Gaussian, Unknowns
 from disorder_landscape.learning.model import TrainedModel, load_model
 from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.studies.rows import complete, study_parser
 
 SEED = 2026
 """Of the fresh wires; the datasets' is 0."""
@@ -44,9 +45,41 @@ class Task:
     index: int
 
 
-def tasks_of(models: Sequence[str], noise: Sequence[float], wires: int) -> list[Task]:
-    """Return the inversions of as many wires of each model at each noise, wire by wire."""
-    return [Task(model, one, index) for index in range(wires) for one in noise for model in models]
+def carry_out(
+    row_of: Callable[[Task], dict[str, object]],
+    doc: str | None,
+    output: Path,
+    noise: Sequence[float],
+    wires: int,
+    command: str,
+) -> None:
+    """Read the command line of a study of fresh wires, and carry out what its table lacks.
+
+    Parameters
+    ----------
+    row_of : callable
+        The row of a task.
+    doc : str, optional
+        The script's own, for --help.
+    output : Path
+    noise : sequence of float
+        In e²/h.
+    wires : int
+        Of each model at each noise; like the two before, what is not named otherwise.
+    command : str
+        What makes the table.
+    """
+    parser = study_parser(doc, output, noise)
+    parser.add_argument("--models", nargs="+", choices=MODELS, default=list(MODELS))
+    parser.add_argument("--wires", type=int, default=wires)
+    arguments = parser.parse_args()
+    tasks = [
+        Task(model, one, index)
+        for index in range(arguments.wires)
+        for one in arguments.noise
+        for model in arguments.models
+    ]
+    complete(row_of, tasks, arguments.output, KEYS, command, arguments.workers)
 
 
 def network_of(model: str, noise: float) -> TrainedModel:
@@ -75,9 +108,15 @@ def measured_wire(
     settings = empty_measurement(config)
     errors = noise_of_channels(noise)
     G = Observation(settings, unknowns, errors).conductances(truth[None])[0]
-    rng = np.random.default_rng([SEED, index, 1])
-    measured = G + noise * rng.normal(size=G.shape)
-    return Observation(replace(settings, G=measured), unknowns, errors), truth
+    return Observation(measured(settings, G, noise, index), unknowns, errors), truth
+
+
+def measured(
+    settings: Measurement, G: FloatArray, noise: float, index: int, part: int = 1
+) -> Measurement:
+    """Return conductances of a fresh wire with errors; parts of a measurement have their own."""
+    rng = np.random.default_rng([SEED, index, part])
+    return replace(settings, G=G + noise * rng.normal(size=G.shape))
 
 
 @dataclass(frozen=True, eq=False)

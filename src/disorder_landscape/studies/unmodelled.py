@@ -20,7 +20,7 @@ from disorder_landscape.inference.unknowns import Unknowns
 from disorder_landscape.inference.verification import verify
 from disorder_landscape.physics.labels import AXES, CONDUCTANCES
 from disorder_landscape.physics.parameters import FloatArray, Nanowire
-from disorder_landscape.studies.inversions import SEED, inverted, network_of, rounded
+from disorder_landscape.studies.inversions import SEED, inverted, measured, network_of, rounded
 
 NOTHING = "nothing"
 KINDS = {
@@ -88,12 +88,6 @@ def true_conductances(task: Task, wire: Nanowire, settings: Measurement) -> Floa
     return simulated(*changed(task.kind, task.index, wire, settings))
 
 
-def measured(task: Task, G: FloatArray, settings: Measurement, part: int) -> Measurement:
-    """Return conductances with errors, at the settings as somebody believes who knows less."""
-    rng = np.random.default_rng([SEED, task.index, part])
-    return replace(settings, G=G + task.noise * rng.normal(size=G.shape))
-
-
 def unmodelled_row(task: Task) -> dict[str, object]:
     """Invert the measurement, check the answer, and compare it with the truth.
 
@@ -110,7 +104,7 @@ def unmodelled_row(task: Task) -> dict[str, object]:
     one = realization(config, task.index)
     settings = empty_measurement(config)
     G = true_conductances(task, one.wire, settings)
-    observation = Observation(measured(task, G, settings, 1), unknowns, noise)
+    observation = Observation(measured(settings, G, task.noise, task.index), unknowns, noise)
     found = inverted(observation, network, task.index)
     mean = found.answer.mean
     true, _ = changed(task.kind, task.index, one.wire, settings)
@@ -120,7 +114,9 @@ def unmodelled_row(task: Task) -> dict[str, object]:
     )
     other_wire = replace(one.wire, barrier=OTHER_BARRIERS)
     other_G = true_conductances(task, other_wire, other_settings)
-    further = Observation(measured(task, other_G, other_settings, 3), unknowns, noise)
+    further = Observation(
+        measured(other_settings, other_G, task.noise, task.index, 3), unknowns, noise
+    )
     rng = np.random.default_rng([SEED, task.index, 4])
     return rounded(
         {
