@@ -1,4 +1,4 @@
-"""Our smoother beside a library's ES-MDA, from the same starts: errors and seconds.
+"""Our rounds and polish beside a library's ES-MDA, from the same starts: errors and seconds.
 
 The library is iterative_ensemble_smoother, with 160 members and eight steps, each with half of the
 inflation of the one before. Writes smoothers.csv, a row per
@@ -19,7 +19,8 @@ from tqdm import tqdm
 from disorder_landscape.chain import MODELS, shipped_model
 from disorder_landscape.inference.first_guess import network_guess
 from disorder_landscape.inference.observation import Observation
-from disorder_landscape.inference.smoother import SmootherSettings, smooth
+from disorder_landscape.inference.polish import polish
+from disorder_landscape.inference.rounds import RoundSettings, rounds
 from disorder_landscape.inference.unknowns import Gaussian
 from disorder_landscape.learning.model import TrainedModel, load_model
 from disorder_landscape.physics.parameters import FloatArray
@@ -50,13 +51,14 @@ def library(observation: Observation, start: Gaussian, seed: int) -> tuple[Float
 
 
 def ours(observation: Observation, start: Gaussian, seed: int) -> tuple[FloatArray, float]:
-    """Return the same of our smoother, one attempt without any polish."""
-    *_, last = smooth(observation, start, [seed, 0], SmootherSettings())
-    return last.distribution.mean, last.spread
+    """Return the same of one attempt of ours."""
+    *_, last = rounds(observation, start, [seed, 0], RoundSettings())
+    answer = polish(observation, last.distribution)
+    return answer.mean, observation.unknowns.site_deviation(answer.covariance)
 
 
 def row(model: TrainedModel, task: Task) -> dict[str, object]:
-    """Let both smoothers invert one measurement."""
+    """Let both invert one measurement."""
     observation, truth = fresh_wire(task)
     start = network_guess(model, observation, np.random.default_rng([task.index, 2**31]))
     distance = observation.unknowns.site_distance

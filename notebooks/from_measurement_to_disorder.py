@@ -39,12 +39,12 @@ print("α =", float(guess["alpha"]), "meV nm")
 # %% [markdown]
 # ## The answer
 #
-# An iterated ensemble smoother starts from the guess and its error, and refines both by simulating
-# wires.
+# Rounds of simulation and regression start from the guess and its error, and Gauss–Newton steps
+# finish them. A second attempt starts from the disorder model's prior, and must agree.
 
 # %%
 inferred = dl.infer(measured, MODEL, noise=0.01)
-print(inferred.attrs["verdict"], "after", inferred.attrs["steps"], "steps")
+print(inferred.attrs["verdict"], "after", inferred.attrs["rounds"], "rounds")
 for channel, misfit in zip(inferred["channel"].values, inferred["misfit"].values, strict=True):
     print(f"misfit of {channel}: {misfit:.4f} e²/h")
 

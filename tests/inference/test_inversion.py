@@ -10,7 +10,6 @@ from disorder_landscape import ArgumentError, Nanowire, conductance
 from disorder_landscape.chain import FIVE, shipped_model
 from disorder_landscape.config import Config, DatasetConfig, TrainingConfig
 from disorder_landscape.dataset.realizations import realization
-from disorder_landscape.inference.approach import ApproachSettings
 from disorder_landscape.inference.inversion import (
     CONVERGED,
     NOT_CONVERGED,
@@ -18,6 +17,7 @@ from disorder_landscape.inference.inversion import (
     InversionSettings,
 )
 from disorder_landscape.inference.report import noise_hint, parse_noise, summary
+from disorder_landscape.inference.rounds import RoundSettings
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.learning.scaling import LabelScaler
 from disorder_landscape.physics.labels import CONDUCTANCES
@@ -111,7 +111,7 @@ def test_settings_are_the_measurements_own(measured):
 def test_what_the_model_cannot_explain_is_flagged(unmodelled):
     more_components = realization(DATASET.model_copy(update={"components": 12}), 3)
     wire = {"gap": replace(TRUE.wire, delta0=0.096), "components": more_components.wire}[unmodelled]
-    soon = InversionSettings(attempts=2, approach=ApproachSettings(rounds=4))
+    soon = InversionSettings(attempts=2, rounds=RoundSettings(rounds=4))
     result = infer(measure(wire), settings=soon)
     assert result.attrs["verdict"] in (NOT_DESCRIBED, NOT_CONVERGED)
     assert result.attrs["attempts"] == 2
@@ -122,7 +122,7 @@ def test_an_interrupted_run_goes_on(measured, inferred, tmp_path):
     checkpoint = tmp_path / "unfinished.json"
     first, second = [], []
 
-    def interrupt(attempt, number, step):
+    def interrupt(attempt, number, one):
         first.append(number)
         if number == 2:
             raise KeyboardInterrupt
@@ -131,8 +131,8 @@ def test_an_interrupted_run_goes_on(measured, inferred, tmp_path):
         infer(measured, checkpoint=checkpoint, told=interrupt)
     other = infer(measured, noise=0.002, checkpoint=checkpoint)  # ignores what is another run's …
     assert other.identical(infer(measured, noise=0.002))
-    result = infer(measured, checkpoint=checkpoint, told=lambda *step: second.append(step))
-    assert len(second) == inferred.attrs["steps"]  # … and leaves it there
+    result = infer(measured, checkpoint=checkpoint, told=lambda *one: second.append(one))
+    assert len(second) == inferred.attrs["rounds"]  # … and leaves it there
     assert result.identical(inferred)
 
 
@@ -199,11 +199,11 @@ def test_a_network_says_what_errors_it_knows():
 def test_the_summary_says_it_all(inferred):
     lines = "\n".join(summary(inferred))
     assert "verdict         converged" in lines
-    assert "from            the prior; attempts: 1" in lines
+    assert "from            the prior\nattempts        1, rounds: " in lines
     assert lines.count("noise: 0.001 e²/h") == 4
 
 
-def test_the_shipped_network_and_the_smoother_find_a_fixed_wire():
+def test_the_shipped_network_and_the_rounds_find_a_fixed_wire():
     """The paper's sizes, the network's guess and an error of 0.01 e²/h: some µeV."""
     from disorder_landscape.learning.model import load_model
 

@@ -46,13 +46,13 @@ def infer(
     seed: int = 0,
     settings: InversionSettings | None = None,
     checkpoint: Path | None = None,
-    told: Told = lambda attempt, number, step: None,
+    told: Told = lambda attempt, number, one: None,
 ) -> xr.Dataset:
     """Find the disorder that explains a measurement, with error bars and a verdict.
 
-    The network's guess and its error at this noise are where an iterated ensemble smoother starts,
-    which refines them with the exact simulation (`smoother`). An answer whose misfit the noise does
-    not explain is not accepted: further attempts start elsewhere.
+    The network's guess and its error at this noise are where rounds of simulation and regression
+    start (`rounds`), which Gauss–Newton steps finish (`polish`). An answer that is not surely right
+    is not accepted before a second attempt, from the disorder model's prior, agrees.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def infer(
     checkpoint : Path, optional
         File through which an interrupted run goes on. It is not deleted: the result is not saved.
     told : callable, optional
-        Told the number of the attempt, the number of the step and the step.
+        Told the number of the attempt, the number of the round and the round.
 
     Returns
     -------
@@ -84,7 +84,7 @@ def infer(
         e²/h. Conductances of the mean, G_LL … G_RL (mu, B, bias). On a finer grid: T_IV (lead,
         map_mu, map_B) of the mean and P_topological (map_mu, map_B), the share of the members with
         det r < 0 at the left end. Attributes: verdict ("converged", "not converged" or "not
-        described by the model"), excess, attempts, steps, start, noise.
+        described by the model"), excess, attempts, rounds, start, noise.
 
     Raises
     ------
@@ -119,7 +119,7 @@ def infer(
         "verdict": verdict(observation, attempts),
         "excess": chosen.excess,
         "attempts": len(attempts),
-        "steps": sum(attempt.rounds + attempt.steps for attempt in attempts),
+        "rounds": sum(attempt.rounds for attempt in attempts),
         "start": start,
         "noise": errors,
         "temperature": measurement.temperature,

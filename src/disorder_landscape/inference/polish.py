@@ -59,6 +59,14 @@ def polish(observation: Observation, start: Gaussian, steps: int = STEPS) -> Gau
             if found < best or damping > largest:
                 break
             damping = max(first, factor**2 * damping)
+        step = tried - x
+        while found < best:  # a valley that bends: a line search costs next to nothing
+            further = tried + step
+            shown_further = observation.simulate(further[None])[0]
+            found_further = objective(further, shown_further)
+            if found_further >= found:
+                break
+            tried, shown, found, step = further, shown_further, found_further, 2 * step
         gained = best - found
         if gained > 0:
             x, y, best = tried, shown, found

@@ -8,21 +8,21 @@ from contextlib import contextmanager
 from tqdm import tqdm
 
 from disorder_landscape.inference.inversion import Told
-from disorder_landscape.inference.smoother import Step
+from disorder_landscape.inference.rounds import Round
 
-USUAL_STEPS = 7
-"""Steps that most inversions from a guess take: what the time left is estimated from."""
+USUAL_ROUNDS = 4
+"""Rounds that most attempts from a guess take: what the time left is estimated from."""
 
 
 @contextmanager
 def inference_progress() -> Iterator[Told]:
-    """Give a progress bar of one inversion, to be told of every step."""
-    with tqdm(total=USUAL_STEPS, unit=" steps", desc="infer", delay=1) as bar:
+    """Give a progress bar of one inversion, to be told of every round."""
+    with tqdm(total=USUAL_ROUNDS, unit=" rounds", desc="infer", delay=1) as bar:
 
-        def told(attempt: int, number: int, step: Step) -> None:
-            bar.total = bar.n + max(USUAL_STEPS - number, 2)
-            spread = f"spread {1e3 * step.spread:.3g} µeV"
-            bar.set_postfix_str(f"attempt {attempt + 1}, misfit {step.misfit:.5f} e²/h, {spread}")
+        def told(attempt: int, number: int, one: Round) -> None:
+            bar.total = bar.n + max(USUAL_ROUNDS - number, 2)
+            spread = f"spread {1e3 * one.spread:.3g} µeV"
+            bar.set_postfix_str(f"attempt {attempt + 1}, misfit {one.misfit:.5f} e²/h, {spread}")
             bar.update()
 
         yield told

@@ -46,7 +46,8 @@ def summary(result: xr.Dataset) -> list[str]:
     attrs = result.attrs
     lines = [
         f"verdict         {attrs['verdict']}",
-        f"from            {attrs['start']}; attempts: {attrs['attempts']}, steps: {attrs['steps']}",
+        f"from            {attrs['start']}",
+        f"attempts        {attrs['attempts']}, rounds: {attrs['rounds']}",
         f"deviation of V  {1e3 * deviation:.3g} µeV, root mean square over the sites",
         f"alpha           {float(alpha.mean()):.5g} ± {float(alpha.std()):.2g} meV nm",
     ]

@@ -1,8 +1,7 @@
 """Inversions of wires of more components than any of our networks knows, from the prior.
 
 The paper reckons with 1.2 million core-hours for the training set of 30 components (S-II.3). Here
-each wire is inverted by itself: rounds of regression lead from the disorder model's prior to where
-the smoother can go on.
+each wire is inverted by itself, from the disorder model's prior.
 """
 
 from __future__ import annotations

@@ -125,7 +125,7 @@ class Inverted:
 
     answer: Gaussian
     outcome: dict[str, object]
-    """`spread`, the answer's own deviation of V in meV; `excess`, `verdict`, `attempts`, `steps`,
+    """`spread`, the answer's own deviation of V in meV; `excess`, `verdict`, `attempts`, `rounds`,
     `seconds`."""
 
 
@@ -140,7 +140,7 @@ def inverted(observation: Observation, network: TrainedModel | None, index: int)
         "excess": chosen.excess,
         "verdict": verdict(observation, attempts),
         "attempts": len(attempts),
-        "steps": sum(attempt.rounds + attempt.steps for attempt in attempts),
+        "rounds": sum(attempt.rounds for attempt in attempts),
         "seconds": seconds,
     }
     return Inverted(chosen.answer, outcome)

@@ -1,4 +1,4 @@
-"""Smoother, polish and Markov chain on problems whose posterior is known."""
+"""Rounds, polish and Markov chain on problems whose posterior is known."""
 
 from dataclasses import dataclass, field, replace
 
@@ -7,9 +7,9 @@ import pytest
 from scipy.stats import kstest
 
 from disorder_landscape.config import DatasetConfig
-from disorder_landscape.inference.approach import ApproachSettings, approach, regress_on_data
 from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.inversion import (
+    CONVERGED,
     NOT_CONVERGED,
     NOT_DESCRIBED,
     Attempt,
@@ -19,14 +19,21 @@ from disorder_landscape.inference.inversion import (
 from disorder_landscape.inference.observation import Observation, noise_of_channels
 from disorder_landscape.inference.polish import linearise, polish
 from disorder_landscape.inference.posterior import independence_chain, predictive_p
-from disorder_landscape.inference.smoother import SmootherSettings, Step, regression, smooth
+from disorder_landscape.inference.rounds import (
+    RIDGES,
+    Round,
+    RoundSettings,
+    learn,
+    rounds,
+    variance_about_lines,
+)
 from disorder_landscape.inference.unknowns import Gaussian, Unknowns
 from disorder_landscape.physics.disorder import disorder_realization
 
 CONFIG = DatasetConfig(realizations=1, components=3, sites=50)
 UNKNOWNS = Unknowns(CONFIG)
 SIZE = len(UNKNOWNS.names)
-SETTINGS = SmootherSettings()
+SETTINGS = RoundSettings()
 
 
 @dataclass
@@ -64,38 +71,6 @@ def posterior(observation):
     return Gaussian(covariance @ (weighted @ observation.data + precision @ prior.mean), covariance)
 
 
-def test_the_smoother_ends_at_the_posterior_and_stays_there(linear):
-    """No datum counts twice, however many steps there are."""
-    exact = posterior(linear)
-    settings = SmootherSettings(steps=30, linear=0.0)  # never done
-    *_, last = smooth(linear, UNKNOWNS.prior, [0], settings)
-    np.testing.assert_allclose(last.distribution.mean, exact.mean, rtol=1e-6, atol=1e-9)
-    scale = np.sqrt(np.diag(exact.covariance))
-    relative = last.distribution.covariance / np.outer(scale, scale)
-    reduced = max(1.0, ((linear.simulate(exact.mean) - linear.data) ** 2 / linear.variance).mean())
-    np.testing.assert_allclose(
-        relative, reduced * exact.covariance / np.outer(scale, scale), atol=1e-6
-    )
-
-
-def test_the_smoother_stops_where_nothing_changes(linear):
-    steps = list(smooth(linear, UNKNOWNS.prior, [0], SETTINGS))
-    assert 3 < len(steps) < SETTINGS.steps
-    assert [step.is_last(SETTINGS) for step in steps] == [False] * (len(steps) - 1) + [True]
-    spreads = [step.spread for step in steps]
-    assert (np.diff(spreads) <= 1e-12).all()
-
-
-def test_what_the_line_cannot_explain_keeps_the_members_apart(linear):
-    bent = Linear(linear.data, linear.slope, bend=0.3)
-    first_bent, first = (
-        next(iter(smooth(one, UNKNOWNS.prior, [0], SETTINGS))) for one in (bent, linear)
-    )
-    assert first.unexplained < 1e-6 < 1 < first_bent.unexplained
-    *_, last = smooth(bent, posterior(linear), [0], SETTINGS)
-    assert last.unexplained < SETTINGS.linear
-
-
 @pytest.mark.parametrize("seed", [0, 1, 2, 3])
 def test_rounds_lead_from_the_prior_to_the_truth(seed):
     """Data that go up and down across the prior: lines through them say little."""
@@ -104,21 +79,22 @@ def test_rounds_lead_from_the_prior_to_the_truth(seed):
     truth = UNKNOWNS.prior.draw(rng, 2)[0]
     waves = Linear(np.zeros(40), slope / 3, bend=2.0)
     waves.data = waves.simulate(truth) + 0.01 * rng.normal(size=40)
-    steps = list(approach(waves, UNKNOWNS.prior, [0], ApproachSettings(unexplained=5.0)))
-    assert steps[0].unexplained > 100
-    assert 1 < len(steps) < ApproachSettings.rounds
-    found = steps[-1].distribution
-    assert steps[-1].spread < 0.2 * steps[0].spread
-    assert found.squared_distance(truth) < 3 * SIZE
-    *_, last = smooth(waves, found, [0], SETTINGS)
+    found = list(rounds(waves, UNKNOWNS.prior, [0], SETTINGS))
+    assert found[0].unexplained > 100
+    assert 1 < len(found) < SETTINGS.rounds
+    last = found[-1]
+    assert last.unexplained < SETTINGS.unexplained
+    assert last.spread < 0.02 * found[0].spread
     assert last.distribution.squared_distance(truth) < 3 * SIZE
+    polished = polish(waves, last.distribution)
+    assert polished.squared_distance(truth) < 3 * SIZE
 
 
 def test_rounds_that_lead_nowhere_end(linear):
     """What nobody could learn from: data of waves far shorter than the prior is wide."""
     waves = Linear(linear.data, 100 * linear.slope, bend=2.0)
-    settings = ApproachSettings(patience=2)
-    left = [step.unexplained for step in approach(waves, UNKNOWNS.prior, [0], settings)]
+    settings = RoundSettings(patience=2)
+    left = [one.unexplained for one in rounds(waves, UNKNOWNS.prior, [0], settings)]
     assert len(left) < settings.rounds
     assert min(left) > settings.unexplained
     assert int(np.argmin(left)) == len(left) - 1 - settings.patience
@@ -127,8 +103,8 @@ def test_rounds_that_lead_nowhere_end(linear):
 def test_rounds_on_lines_do_not_count_data_twice(linear):
     """They come no closer than the posterior, which is where the first of them cannot be yet."""
     exact = posterior(linear)
-    settings = ApproachSettings(unexplained=0.0, rounds=15, wider=1.0)
-    *_, last = approach(linear, UNKNOWNS.prior, [0], settings)
+    settings = RoundSettings(unexplained=0.0, rounds=15, wider=1.0)
+    *_, last = rounds(linear, UNKNOWNS.prior, [0], settings)
     deviation, least = (np.sqrt(np.diag(one.covariance)) for one in (last.distribution, exact))
     assert (deviation > 0.8 * least).all()
     assert (deviation < 5 * least).all()
@@ -136,25 +112,58 @@ def test_rounds_on_lines_do_not_count_data_twice(linear):
 
 
 def test_errors_of_the_regression_are_those_of_members_it_has_not_seen(linear):
+    """… and shown with noise: of the known kind, and of curves that lines leave."""
     rng = np.random.default_rng(6)
-    z = rng.normal(size=(400, SIZE))
-    noise = 0.3 * rng.normal(size=(400, 40))
-    at, error = regress_on_data(linear, z @ linear.slope + noise, z)
+    slope = linear.slope / np.linalg.norm(linear.slope, axis=1, keepdims=True)
+    bent = Linear(linear.data, slope, bend=0.1, variance=np.full(40, 0.3**2))
+    z = rng.normal(size=(300, SIZE))
+    Y = bent.simulate(z)
+    left = variance_about_lines(z, Y)
+    found = []
+    for true in rng.normal(size=(400, SIZE)):
+        data = bent.simulate(true[None])[0] + 0.3 * rng.normal(size=40)
+        at, error = learn(replace(bent, data=data), z, Y, left)
+        found.append(at - true)
     assert at.shape == (SIZE,)
-    nothing = regress_on_data(linear, noise, z)[1]
-    assert np.trace(error) < 0.5 * SIZE
+    actual = np.array(found).T @ np.array(found) / len(found)
+    assert 0.02 < np.trace(error) / SIZE < 0.5
+    np.testing.assert_allclose(np.diag(actual), np.diag(error), rtol=0.3)
+    nothing = learn(bent, z, 1e-6 * Y, np.zeros(40))[1]
     np.testing.assert_allclose(nothing, np.eye(SIZE), atol=0.3)
 
 
-def test_regression_is_exact_for_lines():
+def test_leaving_out_is_what_the_closed_form_says(linear):
+    """Each member's error without it, by fitting again without it."""
+    rng = np.random.default_rng(8)
+    z = rng.normal(size=(30, SIZE))
+    Y = z @ linear.slope
+    exact = replace(linear, variance=np.full(40, 1e-12))
+    left = np.full(40, 100.0)
+    error = learn(exact, z, Y, left)[1]
+
+    def without(ridge):
+        errors = []
+        for i in range(30):
+            kept = np.arange(30) != i
+            A, middle = Y[kept] / 10, Y[kept].mean(axis=0) / 10
+            mean = z[kept].mean(axis=0)
+            fit = np.linalg.solve(
+                (A - middle).T @ (A - middle) + ridge * np.eye(40),
+                (A - middle).T @ (z[kept] - mean),
+            )
+            errors.append((Y[i] / 10 - middle) @ fit + mean - z[i])
+        return np.array(errors).T @ np.array(errors) / 30
+
+    best = min((without(30 * ridge) for ridge in RIDGES), key=np.trace)
+    np.testing.assert_allclose(error, best, rtol=1e-6, atol=1e-9)
+
+
+def test_lines_leave_nothing_of_lines():
     rng = np.random.default_rng(1)
     X, slope = rng.normal(size=(12, 3)), rng.normal(size=(3, 7))
-    at, value, found, residual = regression(X, X @ slope + 2.0)
-    np.testing.assert_allclose(found, slope, atol=1e-12)
-    np.testing.assert_allclose(value, at @ slope + 2.0, atol=1e-12)
-    np.testing.assert_allclose(residual, 0.0, atol=1e-20)
+    np.testing.assert_allclose(variance_about_lines(X, X @ slope + 2.0), 0.0, atol=1e-20)
     noisy = X @ slope + rng.normal(size=(12, 7))
-    assert regression(X, noisy)[3].mean() == pytest.approx(1.0, abs=0.5)
+    assert variance_about_lines(X, noisy).mean() == pytest.approx(1.0, abs=0.5)
 
 
 def test_polish_ends_at_the_posterior(linear):
@@ -162,6 +171,25 @@ def test_polish_ends_at_the_posterior(linear):
     found = polish(linear, Gaussian(exact.mean + 0.01, 1e-4 * np.eye(SIZE)))
     np.testing.assert_allclose(found.mean, exact.mean, rtol=1e-6, atol=1e-9)
     np.testing.assert_allclose(found.covariance, exact.covariance, rtol=1e-5, atol=1e-12)
+
+
+def test_polish_follows_a_valley_that_bends():
+    """On its floor, far from its end; steps as long as the tangent allows would not get there."""
+    scale = np.sqrt(np.diag(UNKNOWNS.prior.covariance))
+
+    class Valley(Linear):
+        def simulate(self, X):
+            z = (X - UNKNOWNS.prior.mean) / scale
+            Y = np.zeros((len(X), 40))
+            Y[:, 0], Y[:, 1] = z[:, 0], 5 * (z[:, 1] - z[:, 0] ** 2 + z[:, 0])
+            return Y
+
+    valley = Valley(1.5 * np.eye(40)[0], np.empty(0), variance=np.full(40, 0.3**2))
+    floor = np.zeros(SIZE)
+    floor[:2] = -1.5, 3.75
+    start = Gaussian(UNKNOWNS.prior.mean + floor * scale, 1e-4 * np.diag(scale**2))
+    shown = valley.simulate(polish(valley, start).mean[None])[0]
+    assert ((shown - valley.data) ** 2 / valley.variance).sum() < 0.5
 
 
 def test_slopes_are_the_derivatives(linear):
@@ -230,18 +258,18 @@ def test_names_and_vectors():
     assert fixed.alpha(np.zeros(4)) == 7.0
 
 
-def test_steps_and_checkpoints_survive_json(linear, tmp_path):
-    step = next(iter(smooth(linear, UNKNOWNS.prior, [0], SETTINGS)))
+def test_rounds_and_checkpoints_survive_json(linear, tmp_path):
+    one = next(iter(rounds(linear, UNKNOWNS.prior, [0], SETTINGS)))
     path = tmp_path / "notes.json"
     notes = Checkpoint(path, b"run")
-    notes.recall("step", step.to_dict)
+    notes.recall("round", one.to_dict)
     again = Checkpoint(path, b"run")
     assert len(again) == 1
-    read = Step.from_dict(again.recall("step", lambda: pytest.fail("calculated again")))
-    np.testing.assert_array_equal(read.distribution.covariance, step.distribution.covariance)
+    read = Round.from_dict(again.recall("round", lambda: pytest.fail("calculated again")))
+    np.testing.assert_array_equal(read.distribution.covariance, one.distribution.covariance)
     other = Checkpoint(path, b"another run")
     assert len(other) == 0
-    other.recall("step", step.to_dict)
+    other.recall("round", one.to_dict)
     assert [len(Checkpoint(path, run)) for run in (b"run", b"another run")] == [1, 1]
 
 
@@ -268,11 +296,20 @@ def test_answers_that_are_equally_bad_say_that_the_model_is(linear, misfits, exp
             data=noisy.data + misfit,
             objective=40 * misfit**2,
             excess=(misfit**2 - 1) * np.sqrt(20),
-            steps=5,
+            rounds=5,
         )
         for far, misfit in enumerate(misfits)
     ]
     assert verdict(noisy, attempts) == expected
+
+
+@pytest.mark.parametrize(("noise", "expected"), [(0.3, NOT_CONVERGED), (1e-3, CONVERGED)])
+def test_one_answer_that_fits_is_enough_where_the_noise_hides_little(linear, noise, expected):
+    measured = replace(linear, variance=np.full(40, noise**2))
+    answer = Gaussian(np.zeros(SIZE), np.eye(SIZE))
+    alone = Attempt(answer, data=measured.data, objective=0.0, excess=0.0, rounds=5)
+    assert verdict(measured, [alone]) == expected
+    assert verdict(measured, [alone, replace(alone, objective=1.0)]) == CONVERGED
 
 
 def test_noise_by_channel():
