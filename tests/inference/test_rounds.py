@@ -90,14 +90,27 @@ def test_rounds_lead_from_the_prior_to_the_truth(seed):
     assert polished.squared_distance(truth) < 3 * SIZE
 
 
-def test_rounds_that_lead_nowhere_end(linear):
+@pytest.mark.parametrize("fine", [2.0, np.inf])
+def test_rounds_that_lead_nowhere_end(linear, fine):
     """What nobody could learn from: data of waves far shorter than the prior is wide."""
-    waves = Linear(linear.data, 100 * linear.slope, bend=2.0)
-    settings = RoundSettings(patience=2)
-    left = [one.unexplained for one in rounds(waves, UNKNOWNS.prior, [0], settings)]
-    assert len(left) < settings.rounds
-    assert min(left) > settings.unexplained
-    assert int(np.argmin(left)) == len(left) - 1 - settings.patience
+    shares = []
+
+    class Waves(Linear):
+        def simulate(self, X):
+            return 2.0 * np.sin(500 * X @ self.slope)
+
+        def on_some_lines(self, share, rng):
+            shares.append(share)
+            return self
+
+    waves = Waves(linear.data, linear.slope)
+    settings = RoundSettings(patience=2, fine=fine)
+    found = list(rounds(waves, UNKNOWNS.prior, [0], settings))
+    assert len(found) < settings.rounds
+    for values in ([one.unexplained for one in found], [one.spread / 0.95 for one in found]):
+        assert min(values[-settings.patience :]) > min(values)
+    assert min(one.unexplained for one in found) > settings.unexplained
+    assert (shares[-1] == 1) == (fine == np.inf)  # all data are tried if it might be the noise
 
 
 def test_rounds_on_lines_do_not_count_data_twice(linear):

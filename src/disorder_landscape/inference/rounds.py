@@ -44,7 +44,10 @@ class RoundSettings:
     least_members: int = 120
     """… and of how many there are at least."""
     share: float = 0.25
-    """Of the data, the same in all rounds."""
+    """Of the data, the same in all rounds, …"""
+    fine: float = 2.0
+    """… until these stand still with less than this many times the noise unexplained. Then it is
+    the noise that hides the rest, and they go on with all data."""
     wider: float = 1.2
     """The next round's wires are drawn this much more widely than the answer says, …"""
     nearer: float = 0.9
@@ -57,7 +60,9 @@ class RoundSettings:
     """Done when lines through the conductances leave less unexplained than this part of the noise,
     …"""
     patience: int = 8
-    """… or when what they leave has not become less in so many rounds: these lead nowhere."""
+    """… or when in so many rounds neither that has become less nor the spread, …"""
+    narrower: float = 0.95
+    """… by this factor at least: these lead nowhere."""
     rounds: int = 30
 
 
@@ -94,16 +99,22 @@ def rounds(
 
     Each is a function of the one before and of (seed, its number).
     """
-    part = observation.on_some_lines(settings.share, np.random.default_rng(seed))
-    distribution, least, least_at = start, np.inf, 0
+    share, distribution = settings.share, start
+    least, narrowest, since = np.inf, np.inf, 0
     for number in range(settings.rounds):
+        part = observation.on_some_lines(share, np.random.default_rng(seed))
         make = partial(_round, part, distribution, [*seed, number], settings)
         one = Round.from_dict(recall(f"round.{'.'.join(map(str, seed))}.{number}", make))
         yield one
-        if one.unexplained < least:
-            least, least_at = one.unexplained, number
-        if least < settings.unexplained or number - least_at >= settings.patience:
+        if one.unexplained < settings.unexplained:
             return
+        narrower = one.spread < settings.narrower * narrowest
+        since = 0 if narrower or one.unexplained < least else since + 1
+        least, narrowest = min(least, one.unexplained), one.spread if narrower else narrowest
+        if since == settings.patience:
+            if share == 1 or least > settings.fine:
+                return
+            share, since = 1.0, 0
         distribution = one.distribution
 
 
