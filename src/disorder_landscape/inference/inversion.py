@@ -10,7 +10,7 @@ import numpy as np
 
 from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.first_guess import network_guess
-from disorder_landscape.inference.observation import Observation, squared_misfits
+from disorder_landscape.inference.observation import Observation, objective, squared_misfits
 from disorder_landscape.inference.polish import polish
 from disorder_landscape.inference.rounds import Recall, Round, RoundSettings, rounds
 from disorder_landscape.inference.unknowns import Gaussian
@@ -120,9 +120,8 @@ def _recalled(recall: Recall, name: str, make: Callable[[], Gaussian]) -> Gaussi
 def _attempt(observation: Observation, answer: Gaussian, count: int) -> Attempt:
     data = observation.simulate(answer.mean[None])[0]
     squares = squared_misfits(observation, data)
-    objective = float(squares.sum() + observation.unknowns.prior.squared_distance(answer.mean))
-    excess = chi_square_excess(observation, squares)
-    return Attempt(answer, data, objective, excess, count)
+    height = float(objective(observation, answer.mean, data))
+    return Attempt(answer, data, height, chi_square_excess(observation, squares), count)
 
 
 def _with_more_members(settings: InversionSettings, number: int) -> RoundSettings:

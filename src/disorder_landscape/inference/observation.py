@@ -95,6 +95,19 @@ def squared_misfits(observation: Observation, Y: FloatArray) -> FloatArray:
     return np.asarray((Y - observation.data) ** 2 / observation.variance)
 
 
+def objective(observation: Observation, X: FloatArray, Y: FloatArray) -> FloatArray:
+    """Return −2 log of the posterior density of members X (…, unknown), up to a constant.
+
+    Parameters
+    ----------
+    observation : Observation
+    X, Y : array, shapes (…, unknown) and (…, datum)
+        Members and what they show.
+    """
+    likelihood = squared_misfits(observation, Y).sum(axis=-1)
+    return np.asarray(likelihood + observation.unknowns.prior.squared_distance(X))
+
+
 def noise_of_channels(noise: float | Mapping[str, float]) -> FloatArray:
     """Return the standard deviation of each channel's errors in e²/h, shape (channel,).
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from disorder_landscape.inference.observation import Observation, squared_misfits
+from disorder_landscape.inference.observation import Observation, objective
 from disorder_landscape.inference.unknowns import Gaussian, Unknowns
 from disorder_landscape.physics.parameters import FloatArray
 
@@ -41,13 +41,9 @@ def polish(observation: Observation, start: Gaussian, steps: int = STEPS) -> Gau
     """
     prior, variance = observation.unknowns.prior, observation.variance
     precision = np.linalg.inv(prior.covariance)
-
-    def objective(x: FloatArray, y: FloatArray) -> float:
-        return float(squared_misfits(observation, y).sum() + prior.squared_distance(x))
-
     x, (factor, first, largest) = start.mean, DAMPING
     y, slope = linearise(observation, start)
-    best, damping = objective(x, y), 0.0
+    best, damping = objective(observation, x, y), 0.0
     for _ in range(steps):
         information = (slope / variance) @ slope.T + precision
         downhill = (slope / variance) @ (observation.data - y) - precision @ (x - prior.mean)
@@ -55,7 +51,7 @@ def polish(observation: Observation, start: Gaussian, steps: int = STEPS) -> Gau
             damped = information + damping * np.diag(np.diag(information))
             tried = x + np.linalg.solve(damped, downhill)
             shown = observation.simulate(tried[None])[0]
-            found = objective(tried, shown)
+            found = objective(observation, tried, shown)
             if found < best or damping > largest:
                 break
             damping = max(first, factor**2 * damping)
@@ -63,7 +59,7 @@ def polish(observation: Observation, start: Gaussian, steps: int = STEPS) -> Gau
         while found < best:  # a valley that bends: a line search costs next to nothing
             further = tried + step
             shown_further = observation.simulate(further[None])[0]
-            found_further = objective(further, shown_further)
+            found_further = objective(observation, further, shown_further)
             if found_further >= found:
                 break
             tried, shown, found, step = further, shown_further, found_further, 2 * step

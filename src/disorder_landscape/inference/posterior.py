@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from disorder_landscape.inference.observation import Observation, squared_misfits
+from disorder_landscape.inference.observation import Observation, objective
 from disorder_landscape.inference.unknowns import Gaussian
 from disorder_landscape.physics.parameters import FloatArray
 
@@ -44,15 +44,13 @@ def independence_chain(
         Of the chain, which starts at the answer's mean.
     rng : Generator
     """
-    prior = observation.unknowns.prior
     proposal = Gaussian(answer.mean, WIDER**2 * answer.covariance)
     X = proposal.draw(rng, length + length % 2)[:length]
     rng.shuffle(X)  # the pairs about the mean
     X = np.concatenate([answer.mean[None], X])
     blocks = np.array_split(X, max(1, len(X) // AT_A_TIME))
     Y = np.concatenate([observation.simulate(block) for block in blocks])
-    likelihood = squared_misfits(observation, Y).sum(axis=1)
-    log_weight = -0.5 * (likelihood + prior.squared_distance(X) - proposal.squared_distance(X))
+    log_weight = -0.5 * (objective(observation, X, Y) - proposal.squared_distance(X))
     present, taken = 0, 0
     chain = np.empty_like(X[1:])
     for i in range(1, len(X)):

@@ -103,7 +103,8 @@ def rounds(
     least, narrowest, since = np.inf, np.inf, 0
     for number in range(settings.rounds):
         part = observation.on_some_lines(share, np.random.default_rng(seed))
-        make = partial(_round, part, distribution, [*seed, number], settings)
+        rng = np.random.default_rng([*seed, number, 1])
+        make = partial(_round, part, distribution, rng, settings)
         one = Round.from_dict(recall(f"round.{'.'.join(map(str, seed))}.{number}", make))
         yield one
         if one.unexplained < settings.unexplained:
@@ -119,19 +120,12 @@ def rounds(
 
 
 def _round(
-    observation: Observation, distribution: Gaussian, seed: list[int], settings: RoundSettings
-) -> dict[str, Any]:
-    rng = np.random.default_rng([*seed, 1])
-    return one_round(observation, distribution, rng, settings).to_dict()
-
-
-def one_round(
     observation: Observation,
     proposal: Gaussian,
     rng: np.random.Generator,
     settings: RoundSettings,
-) -> Round:
-    """Draw members, simulate them, and regress the unknowns on what they show."""
+) -> dict[str, Any]:
+    """Draw members, simulate them, and regress the unknowns on what they show: `Round.to_dict`."""
     unknowns, prior = observation.unknowns, observation.unknowns.prior
     root = np.linalg.cholesky(proposal.covariance)
     members = max(settings.least_members, round(settings.members_per_unknown * prior.mean.size))
@@ -148,12 +142,13 @@ def one_round(
     learned = Gaussian(proposal.mean + root @ at, root @ error @ root.T)
     answer = _upon_the_prior(learned, proposal, prior)
     wider = Gaussian(answer.mean, answer.covariance * widening)
-    return Round(
+    one = Round(
         distribution=wider,
         misfit=float(np.sqrt(((observation.data - Y.mean(axis=0)) ** 2).mean())),
         unexplained=float(np.sqrt((left / observation.variance).mean())),
         spread=unknowns.site_deviation(wider.covariance),
     )
+    return one.to_dict()
 
 
 def variance_about_lines(X: FloatArray, Y: FloatArray) -> FloatArray:
