@@ -43,7 +43,7 @@ class RoundSettings:
     """Wires that are simulated in each round, for each unknown, …"""
     least_members: int = 120
     """… and of how many there are at least."""
-    share: float = 0.25
+    share: float = 0.16
     """Of the data, the same in all rounds, …"""
     fine: float = 2.0
     """… until these stand still with less than this many times the noise unexplained. Then it is
