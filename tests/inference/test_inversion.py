@@ -122,17 +122,23 @@ def test_an_interrupted_run_goes_on(measured, inferred, tmp_path):
     checkpoint = tmp_path / "unfinished.json"
     first, second = [], []
 
-    def interrupt(attempt, number, one):
-        first.append(number)
-        if number == 2:
+    def interrupt(step):
+        first.append(step)
+        if step.number == 2:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
         infer(measured, checkpoint=checkpoint, told=interrupt)
     other = infer(measured, noise=0.002, checkpoint=checkpoint)  # ignores what is another run's …
     assert other.identical(infer(measured, noise=0.002))
-    result = infer(measured, checkpoint=checkpoint, told=lambda *one: second.append(one))
-    assert len(second) == inferred.attrs["rounds"]  # … and leaves it there
+    result = infer(measured, checkpoint=checkpoint, told=second.append)
+    assert second[:3] == first  # … and leaves it there
+    stages = [step.stage for step in second]
+    assert stages.count("round") == inferred.attrs["rounds"]
+    assert stages[-1] == "polish"
+    assert second[-1].misfit < 1.1 * NOISE
+    deviation = float(np.sqrt((inferred["potential_deviation"] ** 2).mean()))
+    assert second[-1].spread == pytest.approx(deviation, rel=0.1)
     assert result.identical(inferred)
 
 

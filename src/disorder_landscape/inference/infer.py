@@ -46,7 +46,7 @@ def infer(
     seed: int = 0,
     settings: InversionSettings | None = None,
     checkpoint: Path | None = None,
-    told: Told = lambda attempt, number, one: None,
+    told: Told = lambda step: None,
 ) -> xr.Dataset:
     """Find the disorder that explains a measurement, with error bars and a verdict.
 
@@ -74,7 +74,7 @@ def infer(
     checkpoint : Path, optional
         File through which an interrupted run goes on. It is not deleted: the result is not saved.
     told : callable, optional
-        Told the number of the attempt, the number of the round and the round.
+        Told of each round when it is over, and of each step of the polish before it is made.
 
     Returns
     -------

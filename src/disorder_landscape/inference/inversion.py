@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.first_guess import network_guess
 from disorder_landscape.inference.observation import Observation, objective, squared_misfits
 from disorder_landscape.inference.polish import polish
-from disorder_landscape.inference.rounds import Recall, Round, RoundSettings, rounds
+from disorder_landscape.inference.rounds import Recall, RoundSettings, rounds
 from disorder_landscape.inference.unknowns import Gaussian
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.physics.parameters import FloatArray
@@ -66,8 +67,20 @@ class Attempt:
         return self.excess <= TOLERATED
 
 
-Told = Callable[[int, int, Round], None]
-"""Told the number of the attempt, the number of the round and the round."""
+class Step(NamedTuple):
+    """What an inversion is about."""
+
+    attempt: int
+    stage: str
+    """"round" or "polish"."""
+    number: int
+    misfit: float
+    """Root mean square in e²/h."""
+    spread: float
+    """The deviation of V in meV, root mean square over the sites."""
+
+
+Told = Callable[[Step], None]
 
 
 def invert(
@@ -75,7 +88,7 @@ def invert(
     model: TrainedModel | None,
     seed: int = 0,
     settings: InversionSettings | None = None,
-    told: Told = lambda attempt, number, one: None,
+    told: Told = lambda step: None,
     checkpoint: Checkpoint | None = None,
 ) -> list[Attempt]:
     """Return the attempts at explaining the data, the `best` of which is the answer.
@@ -104,9 +117,11 @@ def invert(
         found = guess if guess is not None and number == 0 else prior
         count, more = 0, _with_more_members(settings, number)
         for one in rounds(observation, found, [seed, number], more, recall):
-            told(number, count, one)
+            told(Step(number, "round", count, one.misfit, one.spread))
             found, count = one.distribution, count + 1
-        answer = _recalled(recall, f"polish.{number}", partial(polish, observation, found))
+        tell = partial(_tell_of_polish, told, number)
+        make = partial(polish, observation, found, told=tell)
+        answer = _recalled(recall, f"polish.{number}", make)
         attempts.append(_attempt(observation, answer, count))
         if verdict(observation, attempts) != NOT_CONVERGED:
             break
@@ -115,6 +130,10 @@ def invert(
 
 def _recalled(recall: Recall, name: str, make: Callable[[], Gaussian]) -> Gaussian:
     return Gaussian.from_dict(recall(name, lambda: make().to_dict()))
+
+
+def _tell_of_polish(told: Told, attempt: int, number: int, misfit: float, spread: float) -> None:
+    told(Step(attempt, "polish", number, misfit, spread))
 
 
 def _attempt(observation: Observation, answer: Gaussian, count: int) -> Attempt:

@@ -9,6 +9,9 @@ thousands of energies.)
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
+
 import numpy as np
 
 from disorder_landscape.inference.observation import Observation, objective
@@ -28,7 +31,12 @@ ENOUGH = 0.1
 """Done when a step lowers −2 log(posterior) by less than this: by a third of a deviation."""
 
 
-def polish(observation: Observation, start: Gaussian, steps: int = STEPS) -> Gaussian:
+def polish(
+    observation: Observation,
+    start: Gaussian,
+    steps: int = STEPS,
+    told: Callable[[int, float, float], None] = lambda number, misfit, spread: None,
+) -> Gaussian:
     """Return the local optimum that damped Gauss–Newton steps lead to, with Laplace's covariance.
 
     Parameters
@@ -38,14 +46,20 @@ def polish(observation: Observation, start: Gaussian, steps: int = STEPS) -> Gau
         Where to start, and how far the conductances are linear about it.
     steps : int
         At most.
+    told : callable
+        Told the number of each step before it is made, the root-mean-square misfit in e²/h and the
+        deviation of V in meV.
     """
     prior, variance = observation.unknowns.prior, observation.variance
     precision = np.linalg.inv(prior.covariance)
     x, (factor, first, largest) = start.mean, DAMPING
     y, slope = linearise(observation, start)
     best, damping = objective(observation, x, y), 0.0
-    for _ in range(steps):
+    for number in range(steps):
         information = (slope / variance) @ slope.T + precision
+        linear = Gaussian(x, np.linalg.inv(information))
+        misfit = float(np.sqrt(((observation.data - y) ** 2).mean()))
+        told(number, misfit, observation.unknowns.site_deviation(linear.covariance))
         downhill = (slope / variance) @ (observation.data - y) - precision @ (x - prior.mean)
         while True:
             damped = information + damping * np.diag(np.diag(information))
@@ -68,7 +82,7 @@ def polish(observation: Observation, start: Gaussian, steps: int = STEPS) -> Gau
             x, y, best = tried, shown, found
         if gained < ENOUGH:
             break
-        slope = linearise(observation, Gaussian(x, np.linalg.inv(information)))[1]
+        slope = linearise(observation, replace(linear, mean=x))[1]
         damping = 0.0 if damping <= first else damping / factor
     covariance = np.linalg.inv((slope / variance) @ slope.T + precision)
     return Gaussian(x, (covariance + covariance.T) / 2)

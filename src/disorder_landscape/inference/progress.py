@@ -7,22 +7,25 @@ from contextlib import contextmanager
 
 from tqdm import tqdm
 
-from disorder_landscape.inference.inversion import Told
-from disorder_landscape.inference.rounds import Round
+from disorder_landscape.inference.inversion import Step, Told
 
-USUAL_ROUNDS = 4
-"""Rounds that most attempts from a guess take: what the time left is estimated from."""
+USUAL_STEPS = {"round": 4, "polish": 3}
+"""How many most attempts from a guess take, of about one length: what the time left is estimated
+from."""
 
 
 @contextmanager
 def inference_progress() -> Iterator[Told]:
-    """Give a progress bar of one inversion, to be told of every round."""
-    with tqdm(total=USUAL_ROUNDS, unit=" rounds", desc="infer", delay=1) as bar:
+    """Give a progress bar of one inversion, to be told of every step."""
+    with tqdm(total=sum(USUAL_STEPS.values()), unit=" steps", desc="infer", delay=1) as bar:
 
-        def told(attempt: int, number: int, one: Round) -> None:
-            bar.total = bar.n + max(USUAL_ROUNDS - number, 2)
-            spread = f"spread {1e3 * one.spread:.3g} µeV"
-            bar.set_postfix_str(f"attempt {attempt + 1}, misfit {one.misfit:.5f} e²/h, {spread}")
+        def told(step: Step) -> None:
+            left = max(USUAL_STEPS[step.stage] - step.number, 2)
+            bar.total = bar.n + left + (USUAL_STEPS["polish"] if step.stage == "round" else 0)
+            bar.set_postfix_str(
+                f"attempt {step.attempt + 1}, {step.stage} {step.number + 1}, "
+                f"misfit {step.misfit:.5f} e²/h, spread {1e3 * step.spread:.3g} µeV"
+            )
             bar.update()
 
         yield told
