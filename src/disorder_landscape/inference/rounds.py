@@ -3,7 +3,8 @@
 The conductances are peaks of a few kT in the space of the unknowns: on the scale of a guess's error
 they are too rough for lines through them. But what the unknowns are can be learned from the
 conductances even so: as the network does for all wires, ridge regression does it for those that are
-drawn about the present answer, a few hundred. Its error, by leaving out one wire at a time, says
+drawn about the present answer, a few hundred (and those of earlier rounds, as far as they would
+have been drawn, `members`). Its error, by leaving out one wire at a time, says
 how far to trust it, and the next wires are drawn accordingly, until the conductances are straight
 lines over the answer's spread, which is where Gauss–Newton steps end it (`polish`). So a
 measurement leads from the network's guess, or from the disorder model's prior, to the answer.
@@ -25,32 +26,31 @@ from typing import Any, Self
 
 import numpy as np
 
+from disorder_landscape.inference.members import Members
 from disorder_landscape.inference.observation import Observation
+from disorder_landscape.inference.regression import learn, variance_about_lines
 from disorder_landscape.inference.unknowns import Gaussian
-from disorder_landscape.physics.parameters import FloatArray
 
 Recall = Callable[[str, Callable[[], dict[str, Any]]], dict[str, Any]]
 """`Checkpoint.recall`: returns the result of a name, calculated now or before."""
-RIDGES = np.logspace(-1, 1.5, 6)
-"""Strengths of the ridge to choose from, in units of the noise and of what lines leave."""
 
 
 @dataclass(frozen=True)
 class RoundSettings:
     """How the rounds go about it."""
 
-    members_per_unknown: float = 12.0
+    members_per_unknown: float = 10.0
     """Wires that are simulated in each round, for each unknown, …"""
-    least_members: int = 120
+    least_members: int = 100
     """… and of how many there are at least."""
-    share: float = 0.16
+    share: float = 0.25
     """Of the data, the same in all rounds, …"""
     fine: float = 2.0
     """… until these stand still with less than this many times the noise unexplained. Then it is
     the noise that hides the rest, and they go on with all data."""
     wider: float = 1.2
     """The next round's wires are drawn this much more widely than the answer says, …"""
-    nearer: float = 0.9
+    nearer: float = 0.8
     farther: float = 4.0
     """… and as much more, or less, as the data lie farther out than this round's members, or nearer
     to the middle; between these factors in variance."""
@@ -63,7 +63,7 @@ class RoundSettings:
     """… or when in so many rounds neither that has become less nor the spread, …"""
     narrower: float = 0.95
     """… by this factor at least: these lead nowhere."""
-    rounds: int = 30
+    rounds: int = 50
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,12 +99,13 @@ def rounds(
 
     Each is a function of the one before and of (seed, its number).
     """
-    share, distribution = settings.share, start
     least, narrowest, since = np.inf, np.inf, 0
+    share, distribution = settings.share, start
+    count = max(settings.least_members, round(settings.members_per_unknown * start.mean.size))
+    members = _members(observation, share, seed)
     for number in range(settings.rounds):
-        part = observation.on_some_lines(share, np.random.default_rng(seed))
-        rng = np.random.default_rng([*seed, number, 1])
-        make = partial(_round, part, distribution, rng, settings)
+        members.draw(distribution, count, np.random.default_rng([*seed, number, 1]))
+        make = partial(_round, members, distribution, settings)
         one = Round.from_dict(recall(f"round.{'.'.join(map(str, seed))}.{number}", make))
         yield one
         if one.unexplained < settings.unexplained:
@@ -116,23 +117,23 @@ def rounds(
             if share == 1 or least > settings.fine:
                 return
             share, since = 1.0, 0
+            members = _members(observation, share, seed)
         distribution = one.distribution
 
 
-def _round(
-    observation: Observation,
-    proposal: Gaussian,
-    rng: np.random.Generator,
-    settings: RoundSettings,
-) -> dict[str, Any]:
-    """Draw members, simulate them, and regress the unknowns on what they show: `Round.to_dict`."""
+def _members(observation: Observation, share: float, seed: list[int]) -> Members:
+    return Members(observation.on_some_lines(share, np.random.default_rng(seed)))
+
+
+def _round(members: Members, proposal: Gaussian, settings: RoundSettings) -> dict[str, Any]:
+    """Simulate the members, and regress the unknowns on what they show: `Round.to_dict`."""
+    observation = members.observation
     unknowns, prior = observation.unknowns, observation.unknowns.prior
+    X, Y, weight = members.weighted()
     root = np.linalg.cholesky(proposal.covariance)
-    members = max(settings.least_members, round(settings.members_per_unknown * prior.mean.size))
-    z = rng.normal(size=(members, prior.mean.size))
-    Y = observation.simulate(proposal.mean + z @ root.T)
-    left = variance_about_lines(z, Y)
-    at, error = learn(observation, z, Y, left)
+    z = np.linalg.solve(root, (X - proposal.mean).T).T
+    left = variance_about_lines(z, Y, weight)
+    at, error = learn(observation, z, Y, left, weight)
     share, directions = np.linalg.eigh(error)
     share = np.clip(share, settings.least_shrinking**2, 1 - 1e-3)
     error = (directions * share) @ directions.T
@@ -142,55 +143,14 @@ def _round(
     learned = Gaussian(proposal.mean + root @ at, root @ error @ root.T)
     answer = _upon_the_prior(learned, proposal, prior)
     wider = Gaussian(answer.mean, answer.covariance * widening)
+    middle = weight @ Y / weight.sum()
     one = Round(
         distribution=wider,
-        misfit=float(np.sqrt(((observation.data - Y.mean(axis=0)) ** 2).mean())),
+        misfit=float(np.sqrt(((observation.data - middle) ** 2).mean())),
         unexplained=float(np.sqrt((left / observation.variance).mean())),
         spread=unknowns.site_deviation(wider.covariance),
     )
     return one.to_dict()
-
-
-def variance_about_lines(X: FloatArray, Y: FloatArray) -> FloatArray:
-    """Return the variance (datum,) of Y (member, datum) about linear functions of X."""
-    at, value = X.mean(axis=0), Y.mean(axis=0)
-    slope = np.linalg.lstsq(X - at, Y - value, rcond=None)[0]
-    left = Y - value - (X - at) @ slope
-    degrees_of_freedom = max(1, len(X) - X.shape[1] - 1)
-    return np.asarray((left**2).sum(axis=0) / degrees_of_freedom)
-
-
-def learn(
-    observation: Observation, z: FloatArray, Y: FloatArray, left: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Learn what members z (member, unknown) are from what they show, Y (member, datum).
-
-    Ridge regression in the space of the members, on data in units of their noise and of what lines
-    leave of them, `left` (datum,). The members show no noise of their own: what the measurement's
-    does to the answer is known without drawing any.
-
-    Returns
-    -------
-    at : array, shape (unknown,)
-        What the measurement's are.
-    error : array, shape (unknown, unknown)
-        Mean product of the errors for members that were left out, and shown with noise.
-    """
-    members, middle = len(z), Y.mean(axis=0)
-    scale = np.sqrt(observation.variance + left)
-    A = (Y - middle) / scale
-    of_noise = (A * (observation.variance / scale**2)) @ A.T
-    values, vectors = np.linalg.eigh(A @ A.T)
-    found: list[tuple[FloatArray, FloatArray]] = []
-    for ridge in members * RIDGES:
-        inverse = (vectors / (values + ridge)) @ vectors.T
-        weights = inverse @ (z - z.mean(axis=0))
-        left_out = ridge * weights / (ridge * np.diag(inverse) - 1 / members)[:, None]
-        error = left_out.T @ left_out / members + weights.T @ of_noise @ weights
-        found.append((weights, error))
-    weights, error = min(found, key=lambda one: float(np.trace(one[1])))
-    shown = A @ ((observation.data - middle) / scale)
-    return np.asarray(z.mean(axis=0) + shown @ weights), error
 
 
 def _upon_the_prior(learned: Gaussian, proposal: Gaussian, prior: Gaussian) -> Gaussian:

@@ -1,0 +1,68 @@
+"""Ridge regression of the unknowns on the data, and how far it is off."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from disorder_landscape.inference.observation import Observation
+from disorder_landscape.physics.parameters import FloatArray
+
+RIDGES = np.logspace(-1, 1.5, 6)
+"""Strengths of the ridge to choose from, in units of the noise and of what lines leave."""
+
+
+def variance_about_lines(X: FloatArray, Y: FloatArray, weight: FloatArray) -> FloatArray:
+    """Return the variance (datum,) of Y (member, datum) about linear functions of X.
+
+    Parameters
+    ----------
+    X, Y : array, shapes (member, unknown) and (member, datum)
+    weight : array, shape (member,)
+    """
+    total, root = weight.sum(), np.sqrt(weight)[:, None]
+    X, Y = X - weight @ X / total, Y - weight @ Y / total
+    slope = np.linalg.lstsq(root * X, root * Y, rcond=None)[0]
+    left = weight @ (Y - X @ slope) ** 2 / total
+    effective = total**2 / (weight**2).sum()
+    return np.asarray(left * effective / max(1.0, effective - X.shape[1] - 1))
+
+
+def learn(
+    observation: Observation, z: FloatArray, Y: FloatArray, left: FloatArray, weight: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Learn what members z (member, unknown) are from what they show, Y (member, datum).
+
+    Ridge regression in the space of the members, on data in units of their noise and of what lines
+    leave of them, `left` (datum,). The members show no noise of their own: what the measurement's
+    does to the answer is known without drawing any.
+
+    Parameters
+    ----------
+    observation : Observation
+    z, Y : array, shapes (member, unknown) and (member, datum)
+    left : array, shape (datum,)
+    weight : array, shape (member,)
+
+    Returns
+    -------
+    at : array, shape (unknown,)
+        What the measurement's are.
+    error : array, shape (unknown, unknown)
+        Mean product of the errors for members that were left out, and shown with noise.
+    """
+    total, root = weight.sum(), np.sqrt(weight)[:, None]
+    middle, center = weight @ Y / total, weight @ z / total
+    scale = np.sqrt(observation.variance + left)
+    A, target = root * (Y - middle) / scale, root * (z - center)
+    of_noise = (A * (observation.variance / scale**2)) @ A.T
+    values, vectors = np.linalg.eigh(A @ A.T)
+    along = vectors.T @ target
+    found: list[tuple[FloatArray, FloatArray]] = []
+    for ridge in total * RIDGES:
+        slope = vectors @ (along / (values + ridge)[:, None])
+        own = ridge * (vectors**2 @ (1 / (values + ridge))) - weight / total
+        left_out = ridge * slope / own[:, None]
+        found.append((slope, left_out.T @ left_out / total + slope.T @ of_noise @ slope))
+    slope, error = min(found, key=lambda one: float(np.trace(one[1])))
+    shown = A @ ((observation.data - middle) / scale)
+    return np.asarray(center + shown @ slope), error
