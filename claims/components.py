@@ -17,7 +17,7 @@ COMMAND = "python claims/components.py"
 def main() -> None:
     """Carry out what is missing."""
     output = Path(__file__).resolve().parent / "components.csv"
-    parser = study_parser(__doc__, output, [0.01])
+    parser = study_parser(__doc__, output, [0.001, 0.01])
     parser.add_argument("--components", nargs="+", type=int, default=[15, 20, 30])
     parser.add_argument("--wires", type=int, default=4)
     arguments = parser.parse_args()

@@ -12,6 +12,7 @@ from disorder_landscape.claims.derived import fixed_combinations, true_answers
 from disorder_landscape.claims.inversions import (
     SHOWN,
     accuracy_table,
+    components_table,
     coverage,
     uniqueness_table,
     unmodelled_table,
@@ -71,6 +72,20 @@ def test_the_table_counts_wrong_answers_by_their_verdict(tmp_path):
     line = accuracy_table(path).splitlines()[-1]
     assert "five components and alpha, 0.01 | 40 | 40 | 1, 1, 1e+02" in line
     assert "| 98 % | 1, 1 |" in line
+
+
+def test_the_table_of_more_components_has_a_row_for_each_noise(tmp_path):
+    found = {"prior_error": 0.4, "site_error": 2e-4, "spread": 1e-4, "seconds": 60.0}
+    rows = [
+        {"components": 20, "noise": 0.001, "verdict": CONVERGED} | found,
+        {"components": 20, "noise": 0.001, "verdict": NOT_CONVERGED} | found | {"site_error": 0.1},
+        {"components": 15, "noise": 0.01, "verdict": CONVERGED} | found,
+    ]
+    path = tmp_path / "rows.csv"
+    pd.DataFrame(rows).to_csv(path, index=False)
+    fifteen, twenty = components_table(path).splitlines()[2:]
+    assert fifteen == "| 15, 0.01 | 1 | 400 | 0.2, 0.2 | 0.1 | 100 % | 0, 0 | 60 |"
+    assert twenty == "| 20, 0.001 | 2 | 400 | 50, 1e+02 | 0.1 | 50 % | 1, 0 | 60 |"
 
 
 def test_the_table_of_what_the_model_lacks_counts_both_checks(tmp_path):

@@ -16,6 +16,7 @@ from disorder_landscape.studies.inversions import wrong
 from disorder_landscape.studies.unmodelled import KINDS, UNLIKELY
 
 INVERSIONS = REPOSITORY / "claims" / "inversions.csv"
+COMPONENTS = REPOSITORY / "claims" / "components.csv"
 UNIQUENESS = REPOSITORY / "claims" / "uniqueness.csv"
 UNMODELLED = REPOSITORY / "claims" / "unmodelled.csv"
 SHOWN = (0.01, 0.1)
@@ -31,6 +32,16 @@ ACCURACY_COLUMNS = (
     "converged",
     "wrong: flagged, unflagged",
     "within 50, 80, 95 % (%)",
+    "seconds, one core",
+)
+COMPONENTS_COLUMNS = (
+    "components, noise (e²/h)",
+    "wires",
+    "prior: V off by (µeV)",
+    "inversion: median, worst",
+    "its own error bar",
+    "converged",
+    "wrong: flagged, unflagged",
     "seconds, one core",
 )
 UNMODELLED_COLUMNS = (
@@ -61,7 +72,6 @@ def accuracy_table(path: Path = INVERSIONS) -> str:
     rows = []
     for (model, noise), some in pd.read_csv(path).groupby(["model", "noise"]):
         error = 1e3 * some["site_error"]
-        is_wrong, is_converged = wrong(some), some["verdict"] == CONVERGED
         rows.append(
             (
                 f"{str(model).replace('_', ' ')}, {noise:g}",
@@ -70,13 +80,38 @@ def accuracy_table(path: Path = INVERSIONS) -> str:
                 ", ".join(f"{x:.2g}" for x in (error.median(), error.quantile(0.9), error.max())),
                 f"{1e3 * some['spread'].median():.2g}",
                 f"{some['network_scaled_error'].mean():.2g}, {some['scaled_error'].mean():.1g}",
-                f"{100 * is_converged.mean():.0f} %",
-                f"{(is_wrong & ~is_converged).sum()}, {(is_wrong & is_converged).sum()}",
+                *_verdicts(some),
                 ", ".join(f"{100 * part:.0f}" for part in coverage(some)) if noise > 0 else "–",
                 f"{some['seconds'].median():.0f}",
             )
         )
     return markdown(ACCURACY_COLUMNS, rows)
+
+
+def _verdicts(some: pd.DataFrame) -> tuple[str, str]:
+    """Return how many converged, and how many are wrong: flagged, unflagged."""
+    is_wrong, is_converged = wrong(some), some["verdict"] == CONVERGED
+    return (
+        f"{100 * is_converged.mean():.0f} %",
+        f"{(is_wrong & ~is_converged).sum()}, {(is_wrong & is_converged).sum()}",
+    )
+
+
+def components_table(path: Path = COMPONENTS) -> str:
+    """Return a Markdown table of the inversions without a network, of more components."""
+    rows = [
+        (
+            f"{components}, {noise:g}",
+            str(len(some)),
+            f"{1e3 * some['prior_error'].median():.0f}",
+            f"{1e3 * some['site_error'].median():.2g}, {1e3 * some['site_error'].max():.2g}",
+            f"{1e3 * some['spread'].median():.2g}",
+            *_verdicts(some),
+            f"{some['seconds'].median():.0f}",
+        )
+        for (components, noise), some in pd.read_csv(path).groupby(["components", "noise"])
+    ]
+    return markdown(COMPONENTS_COLUMNS, rows)
 
 
 def unmodelled_table(path: Path = UNMODELLED) -> str:

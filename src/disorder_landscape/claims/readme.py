@@ -12,6 +12,7 @@ from disorder_landscape.claims.conventions import conventions_table
 from disorder_landscape.claims.findings import stored_findings
 from disorder_landscape.claims.inversions import (
     accuracy_table,
+    components_table,
     uniqueness_table,
     unmodelled_table,
 )
@@ -64,6 +65,7 @@ def written(text: str) -> str:
     """Return a README's text with all sections as the stored results have them."""
     contents = {
         "claims": claims_content,
+        "components": components_table,
         "conventions": conventions_table,
         "inversions": accuracy_table,
         "uniqueness": uniqueness_table,
