@@ -72,7 +72,7 @@ class Step(NamedTuple):
 
     attempt: int
     stage: str
-    """"round" or "polish"."""
+    """One of "round" and "polish"."""
     number: int
     misfit: float
     """Root mean square in e²/h."""

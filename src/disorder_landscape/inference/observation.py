@@ -90,6 +90,11 @@ class Observation:
         return np.asarray(np.sqrt(mean))
 
 
+def overall_misfit(observation: Observation, y: FloatArray) -> float:
+    """Return the root-mean-square misfit of simulated data (datum,), all channels, in e²/h."""
+    return float(np.sqrt(((observation.data - y) ** 2).mean()))
+
+
 def squared_misfits(observation: Observation, Y: FloatArray) -> FloatArray:
     """Return those of simulated data (…, datum) in units of the errors' variance, same shape."""
     return np.asarray((Y - observation.data) ** 2 / observation.variance)

@@ -14,7 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from disorder_landscape.inference.observation import Observation, objective
+from disorder_landscape.inference.observation import Observation, objective, overall_misfit
 from disorder_landscape.inference.unknowns import Gaussian, Unknowns
 from disorder_landscape.physics.parameters import FloatArray
 
@@ -25,6 +25,7 @@ LEAST_DIFFERENCE = 2e-5
 ALPHA_UNIT = 50.0
 """Change of α in nm for that of V in meV that is as large to the conductances."""
 STEPS = 12
+"""At most."""
 DAMPING = 4.0, 1e-2, 1e6
 """Factor, first and largest value of Levenberg's and Marquardt's damping."""
 ENOUGH = 0.3
@@ -35,7 +36,6 @@ together. That is about as much as the simulation's own error adds where the noi
 def polish(
     observation: Observation,
     start: Gaussian,
-    steps: int = STEPS,
     told: Callable[[int, float, float], None] = lambda number, misfit, spread: None,
 ) -> Gaussian:
     """Return the local optimum that damped Gauss–Newton steps lead to, with Laplace's covariance.
@@ -45,8 +45,6 @@ def polish(
     observation : Observation
     start : Gaussian
         Where to start, and how far the conductances are linear about it.
-    steps : int
-        At most.
     told : callable
         Told the number of each step before it is made, the root-mean-square misfit in e²/h and the
         deviation of V in meV.
@@ -56,11 +54,11 @@ def polish(
     x, (factor, first, largest) = start.mean, DAMPING
     y, slope = linearise(observation, start)
     best, damping = objective(observation, x, y), 0.0
-    for number in range(steps):
+    for number in range(STEPS):
         information = (slope / variance) @ slope.T + precision
         linear = Gaussian(x, np.linalg.inv(information))
-        misfit = float(np.sqrt(((observation.data - y) ** 2).mean()))
-        told(number, misfit, observation.unknowns.site_deviation(linear.covariance))
+        spread = observation.unknowns.site_deviation(linear.covariance)
+        told(number, overall_misfit(observation, y), spread)
         downhill = (slope / variance) @ (observation.data - y) - precision @ (x - prior.mean)
         while True:
             damped = information + damping * np.diag(np.diag(information))

@@ -27,7 +27,7 @@ from typing import Any, Self
 import numpy as np
 
 from disorder_landscape.inference.members import Members
-from disorder_landscape.inference.observation import Observation
+from disorder_landscape.inference.observation import Observation, overall_misfit
 from disorder_landscape.inference.regression import learn, variance_about_lines
 from disorder_landscape.inference.unknowns import Gaussian
 
@@ -143,10 +143,9 @@ def _round(members: Members, proposal: Gaussian, settings: RoundSettings) -> dic
     learned = Gaussian(proposal.mean + root @ at, root @ error @ root.T)
     answer = _upon_the_prior(learned, proposal, prior)
     wider = Gaussian(answer.mean, answer.covariance * widening)
-    middle = weight @ Y / weight.sum()
     one = Round(
         distribution=wider,
-        misfit=float(np.sqrt(((observation.data - middle) ** 2).mean())),
+        misfit=overall_misfit(observation, weight @ Y / weight.sum()),
         unexplained=float(np.sqrt((left / observation.variance).mean())),
         spread=unknowns.site_deviation(wider.covariance),
     )
