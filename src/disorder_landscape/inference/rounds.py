@@ -44,10 +44,11 @@ class RoundSettings:
     least_members: int = 100
     """… and of how many there are at least."""
     share: float = 0.25
-    """Of the data, the same in all rounds, …"""
+    """Of the data, the same in all rounds until these are done, when they go on with all data: far
+    closer, where there may be more than one optimum again, some deviations apart. …"""
     fine: float = 2.0
-    """… until these stand still with less than this many times the noise unexplained. Then it is
-    the noise that hides the rest, and they go on with all data."""
+    """… So they do where they stand still with less than this many times the noise unexplained:
+    then it is the noise that hides the rest."""
     wider: float = 1.2
     """The next round's wires are drawn this much more widely than the answer says, …"""
     nearer: float = 0.8
@@ -108,15 +109,16 @@ def rounds(
         make = partial(_round, members, distribution, settings)
         one = Round.from_dict(recall(f"round.{'.'.join(map(str, seed))}.{number}", make))
         yield one
-        if one.unexplained < settings.unexplained:
+        straight = one.unexplained < settings.unexplained
+        if straight and share == 1:
             return
         narrower = one.spread < settings.narrower * narrowest
         since = 0 if narrower or one.unexplained < least else since + 1
         least, narrowest = min(least, one.unexplained), one.spread if narrower else narrowest
-        if since == settings.patience:
+        if straight or since == settings.patience:
             if share == 1 or least > settings.fine:
                 return
-            share, since = 1.0, 0
+            share, since, least, narrowest = 1.0, 0, np.inf, np.inf
             members = _members(observation, share, seed)
         distribution = one.distribution
 
