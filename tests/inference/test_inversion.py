@@ -10,14 +10,19 @@ from disorder_landscape import ArgumentError, Nanowire, conductance
 from disorder_landscape.chain import FIVE, shipped_model
 from disorder_landscape.config import Config, DatasetConfig, TrainingConfig
 from disorder_landscape.dataset.realizations import realization
+from disorder_landscape.inference.first_guess import network_guess
 from disorder_landscape.inference.inversion import (
     CONVERGED,
     NOT_CONVERGED,
     NOT_DESCRIBED,
     InversionSettings,
 )
+from disorder_landscape.inference.measurement import measurement_of, settings_of
+from disorder_landscape.inference.observation import Observation
 from disorder_landscape.inference.report import noise_hint, parse_noise, summary
 from disorder_landscape.inference.rounds import RoundSettings
+from disorder_landscape.inference.unknowns import Unknowns
+from disorder_landscape.inference.word import word_on
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.learning.scaling import LabelScaler
 from disorder_landscape.physics.labels import CONDUCTANCES
@@ -185,6 +190,53 @@ def test_bad_input_is_refused_in_one_sentence(measured, change, options, message
         G = change(measured)
     with pytest.raises(ArgumentError, match=message):
         dl.infer(G, MODEL, **options)
+
+
+class FirstNumbers:
+    """Instead of a network: the first numbers of its input."""
+
+    def predict_on_batch(self, x):
+        return x.reshape(len(x), -1)[:, :3]
+
+
+def test_the_network_is_shown_its_own_points_of_a_larger_grid():
+    model, unknowns = replace(MODEL, network=FirstNumbers()), Unknowns(DATASET)
+    larger = DATASET.model_copy(update={"mu_points": 11, "bias": (-0.03, 0.0, 0.01, 0.03)})
+    guesses = [
+        network_guess(
+            model,
+            Observation(
+                measurement_of(measure(TRUE.wire, 0.0, config), settings_of(DATASET)),
+                unknowns,
+                np.zeros(4),
+            ),
+            np.random.default_rng(0),
+        )
+        for config in (DATASET, larger)
+    ]
+    for part in ("mean", "covariance"):
+        one, other = (getattr(guess, part) for guess in guesses)
+        np.testing.assert_allclose(one, other, atol=1e-4)
+
+
+def test_a_network_of_few_points_has_its_word_on_each_wire():
+    model, larger = replace(MODEL, network=FirstNumbers()), {"mu_points": 11, "B_points": 16}
+    G = measure(TRUE.wire, config=DATASET.model_copy(update=larger))
+    whole = measurement_of(G, settings_of(DATASET))
+    observation = Observation(whole, Unknowns(DATASET), np.full(4, NOISE))
+    assert word_on(None, observation, 0.25) is None
+    assert word_on(model, observation, 0.2) is None
+    word = word_on(model, observation, 0.25)
+    np.testing.assert_array_equal(word.seen.measurement.G, whole.G[::2, ::3])
+    np.testing.assert_allclose(word.on_data(), whole.G[0, 0, 0, :3], atol=1e-6)
+    Y = np.zeros((200, word.seen.data.size))
+    labels = word.on_members(Y, np.random.default_rng(0))
+    np.testing.assert_allclose(labels.std(axis=0), NOISE, rtol=0.2)
+
+    inferred = dl.infer(G, model, NOISE)
+    assert inferred.attrs["start"] == "the prior, with the network's word on each wire"
+    assert inferred.attrs["verdict"] == CONVERGED
+    assert site_error(inferred) < 0.005
 
 
 def test_noise_from_the_command_line():

@@ -23,6 +23,7 @@ from disorder_landscape.inference.posterior import independence_chain, predictiv
 from disorder_landscape.inference.regression import RIDGES, learn, variance_about_lines
 from disorder_landscape.inference.rounds import Round, RoundSettings, rounds
 from disorder_landscape.inference.unknowns import Gaussian, Unknowns
+from disorder_landscape.inference.word import Said
 from disorder_landscape.physics.disorder import disorder_realization
 
 CONFIG = DatasetConfig(realizations=1, components=3, sites=50)
@@ -166,6 +167,23 @@ def test_leaving_out_is_what_the_closed_form_says(linear):
     np.testing.assert_allclose(error, best, rtol=1e-6, atol=1e-9)
 
 
+def test_a_networks_word_is_believed_as_far_as_it_is_right():
+    """Data that teach nothing, and labels with errors of half the members' deviation."""
+    rng = np.random.default_rng(12)
+    z, Y, one = rng.normal(size=(300, SIZE)), rng.normal(size=(300, 40)), np.ones(300)
+    nothing = Linear(np.zeros(40), np.zeros((SIZE, 40)))
+    truth = rng.normal(size=(200, SIZE))
+    labels, heard = (x + 0.5 * rng.normal(size=x.shape) for x in (z, truth))
+    left = variance_about_lines(z, Y, one)
+    without = learn(nothing, z, Y, left, one)[1]
+    assert np.trace(without) / SIZE > 0.9
+    found = [learn(nothing, z, Y, left, one, Said(3 * labels, 3 * word)) for word in heard]
+    error = found[0][1]
+    assert 0.2 < np.trace(error) / SIZE < 0.35  # 0.2 is Bayes' theorem's
+    actual = np.array([at for at, _ in found]) - truth
+    np.testing.assert_allclose((actual**2).mean(), np.trace(error) / SIZE, rtol=0.15)
+
+
 def test_members_of_earlier_proposals_count_as_if_drawn_from_the_last(linear):
     """Weighted means are the last proposal's; what is far from it is neither used nor simulated."""
     simulated = []
@@ -185,7 +203,8 @@ def test_members_of_earlier_proposals_count_as_if_drawn_from_the_last(linear):
     alone.draw(last, 600, rng)
     np.testing.assert_allclose(alone.weighted().weight, 1.0)
     simulated.clear()
-    X, Y, weight = members.weighted()
+    X, Y, weight, said = members.weighted()
+    assert said is None
     assert simulated == [MOST // 3, MOST // 3]
     np.testing.assert_allclose(Y, X @ linear.slope)
     z = np.linalg.solve(np.linalg.cholesky(last.covariance), (X - last.mean).T).T

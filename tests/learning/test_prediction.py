@@ -6,6 +6,7 @@ import shutil
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.learning.mirror import mirrored_labels
@@ -132,3 +133,10 @@ def test_a_truncated_file_is_refused(trained, tmp_path, G, name):
     (folder / name).write_bytes(whole[: len(whole) // 2])
     with pytest.raises(ArgumentError, match=f"model must .*{name}"):
         predict(folder, G)
+
+
+def test_of_a_larger_grid_the_network_sees_its_own_points(model, G):
+    between = G.assign_coords(mu=G["mu"] + 0.01, B=G["B"] + 0.02)
+    larger = xr.concat([G, between], "mu", join="outer").sortby("mu").fillna(-1.0)
+    assert larger.sizes["B"] == 2 * G.sizes["B"]
+    assert predict(model, larger).equals(predict(model, G))

@@ -6,7 +6,8 @@ import numpy as np
 
 from disorder_landscape.inference.observation import Observation
 from disorder_landscape.inference.unknowns import Gaussian, Unknowns
-from disorder_landscape.learning.model import TrainedModel
+from disorder_landscape.learning.model import TrainedModel, points_of_grid
+from disorder_landscape.physics.labels import AXES
 from disorder_landscape.physics.parameters import FloatArray
 
 WIRES_PER_UNKNOWN = 4
@@ -29,8 +30,10 @@ def network_guess(
     """Return what the network says of a measurement, less its bias, and with the error it makes.
 
     Both are measured: wires like the guess are simulated, given errors of the stated noise, and
-    shown to the network. So the error is that of this network for such wires at this noise.
+    shown to the network. So the error is that of this network for such wires at this noise. Of a
+    measurement with more points than the network's grid it is shown those that are its own.
     """
+    observation = as_seen(model, observation)
     unknowns = observation.unknowns
     guess = network_labels(model, unknowns, observation.measurement.G[None])[0]
     error = _error_without_noise(model, unknowns)
@@ -44,6 +47,12 @@ def network_guess(
     least = np.where(predicted, error / 10, error)
     covariance = WIDENING**2 * np.cov(off.T) + np.diag(least**2)
     return Gaussian(guess - off.mean(axis=0), covariance)
+
+
+def as_seen(model: TrainedModel, observation: Observation) -> Observation:
+    """Return the part of an observation that is on the network's grid."""
+    axes = {axis: getattr(observation.measurement, axis) for axis in AXES}
+    return observation.at(*points_of_grid(model.config.dataset, axes, "measurement"))
 
 
 def _error_without_noise(model: TrainedModel, unknowns: Unknowns) -> FloatArray:

@@ -20,12 +20,14 @@ from disorder_landscape.inference.inversion import (
 )
 from disorder_landscape.inference.measurement import measurement_of, settings_of
 from disorder_landscape.inference.observation import Observation, noise_of_channels
+from disorder_landscape.inference.rounds import RoundSettings
 from disorder_landscape.inference.unknowns import Unknowns
+from disorder_landscape.inference.word import word_on
 from disorder_landscape.learning.model import (
     TrainedModel,
-    check_grid,
     load_model,
     load_model_config,
+    on_grid_of,
 )
 from disorder_landscape.learning.scaling import NOISE_FLOOR
 from disorder_landscape.physics.labels import AXES, CONDUCTANCES, labelled
@@ -89,7 +91,7 @@ def infer(
     Raises
     ------
     ArgumentError
-        If the measurement is on another grid than the network's, not one wire's or in siemens, if
+        If the measurement lacks points of the network's grid, is not one wire's or in siemens, if
         the noise is negative, or another argument is out of range.
     """
     whole_config = (
@@ -104,10 +106,12 @@ def infer(
     whole = bool(np.isfinite(measurement.G).all())
     trained = None
     if network and whole:
-        check_grid(G, config, "measurement")
+        on_grid_of(config, G, "measurement")
         trained = model if isinstance(model, TrainedModel) else load_model(model)
     observation = Observation(measurement, Unknowns(config), errors)
     start = "the prior" if trained is None else "the network's guess"
+    if word_on(trained, observation, RoundSettings.share) is not None:
+        start = "the prior, with the network's word on each wire"
     if network and not whole:
         start += ", because the network needs all conductances and some are missing"
     fingerprint = repr((whole_config, errors.tolist(), seed, settings, start, measurement))

@@ -13,8 +13,9 @@ from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.first_guess import network_guess
 from disorder_landscape.inference.observation import Observation, objective, squared_misfits
 from disorder_landscape.inference.polish import polish
-from disorder_landscape.inference.rounds import Recall, RoundSettings, rounds
+from disorder_landscape.inference.rounds import WITH_WORD, Recall, RoundSettings, rounds
 from disorder_landscape.inference.unknowns import Gaussian
+from disorder_landscape.inference.word import word_on
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.physics.parameters import FloatArray
 
@@ -98,6 +99,7 @@ def invert(
     observation : Observation
     model : TrainedModel, optional
         The network that guesses; without it the disorder model's prior is where attempts start.
+        They do, too, if its word on each wire is heard (`word_on`), which says more than a guess.
     seed : int
     settings : InversionSettings, optional
     told : callable
@@ -106,17 +108,19 @@ def invert(
         What an interrupted run has found.
     """
     recall = (checkpoint if checkpoint is not None else Checkpoint()).recall
-    settings = settings if settings is not None else InversionSettings()
+    word = word_on(model, observation, RoundSettings.share)
+    if settings is None:
+        settings = InversionSettings(RoundSettings() if word is None else WITH_WORD)
     attempts: list[Attempt] = []
     prior, guess = observation.unknowns.prior, None
-    if model is not None:
+    if model is not None and word is None:
         rng = np.random.default_rng([seed, 2**31])
         make = partial(network_guess, model, observation, rng)
         guess = _recalled(recall, "guess", make)
     for number in range(settings.attempts):
         found = guess if guess is not None and number == 0 else prior
         count, more = 0, _with_more_members(settings, number)
-        for one in rounds(observation, found, [seed, number], more, recall):
+        for one in rounds(observation, found, [seed, number], more, recall, word):
             told(Step(number, "round", count, one.misfit, one.spread))
             found, count = one.distribution, count + 1
         tell = partial(_tell_of_polish, told, number)

@@ -16,12 +16,13 @@ import numpy as np
 
 from disorder_landscape.inference.observation import Observation
 from disorder_landscape.inference.unknowns import Gaussian
+from disorder_landscape.inference.word import Said, Word
 from disorder_landscape.physics.parameters import FloatArray
 
 LEAST_WEIGHT = 1e-3
 """Members of less weight are not looked at, …"""
 MOST = 2000
-"""… and the oldest are forgotten where there are more than so many."""
+"""… and, if no number is given, the oldest are forgotten where there are more than so many."""
 
 
 class Weighted(NamedTuple):
@@ -30,15 +31,25 @@ class Weighted(NamedTuple):
     X: FloatArray
     Y: FloatArray
     weight: FloatArray
+    said: Said | None
+    """What the network says, of them and of the measurement."""
+
+
+class _Shown(NamedTuple):
+    """Data (member, datum) and the network's labels (member, label), of which there may be none."""
+
+    Y: FloatArray
+    labels: FloatArray
 
 
 @dataclass(eq=False)
 class _Drawn:
-    """Members of one proposal; `Y` once they have been simulated."""
+    """Members of one proposal; `shown` once they have been simulated."""
 
     proposal: Gaussian
     X: FloatArray
-    Y: FloatArray | None = None
+    rng: np.random.Generator
+    shown: _Shown | None = None
 
 
 @dataclass(eq=False)
@@ -49,17 +60,23 @@ class Members:
     ----------
     observation : Observation
         Which data are simulated.
+    word : Word, optional
+        Of the network on these data.
+    most : int
+        The oldest are forgotten where there are more.
     """
 
     observation: Observation
+    word: Word | None = None
+    most: int = MOST
     _drawn: list[_Drawn] = field(default_factory=list)
 
     def draw(self, proposal: Gaussian, count: int, rng: np.random.Generator) -> None:
         """Draw so many members of the next proposal; they are simulated when they are needed."""
         root = np.linalg.cholesky(proposal.covariance)
         X = proposal.mean + rng.normal(size=(count, proposal.mean.size)) @ root.T
-        self._drawn.append(_Drawn(proposal, X))
-        while sum(len(drawn.X) for drawn in self._drawn) > max(MOST, count):
+        self._drawn.append(_Drawn(proposal, X, rng))
+        while sum(len(drawn.X) for drawn in self._drawn) > max(self.most, count):
             self._drawn.pop(0)
 
     def weighted(self) -> Weighted:
@@ -70,19 +87,23 @@ class Members:
         mixture = np.logaddexp.reduce(log + np.log(count / count.sum())[:, None], axis=0)
         weight = np.exp(log[-1] - mixture)
         counts = weight > LEAST_WEIGHT
-        Y = [
-            self._simulated(drawn)[some]
-            for drawn, some in zip(
-                self._drawn, np.split(counts, np.cumsum(count)[:-1]), strict=True
-            )
-            if some.any()
+        some = np.split(counts, np.cumsum(count)[:-1])
+        shown = [
+            [part[here] for part in self._simulated(drawn)]
+            for drawn, here in zip(self._drawn, some, strict=True)
+            if here.any()
         ]
-        return Weighted(X[counts], np.concatenate(Y), weight[counts])
+        Y, labels = (np.concatenate(parts) for parts in zip(*shown, strict=True))
+        said = None if self.word is None else Said(labels, self.word.on_data())
+        return Weighted(X[counts], Y, weight[counts], said)
 
-    def _simulated(self, drawn: _Drawn) -> FloatArray:
-        if drawn.Y is None:
-            drawn.Y = self.observation.simulate(drawn.X)
-        return drawn.Y
+    def _simulated(self, drawn: _Drawn) -> _Shown:
+        if drawn.shown is None:
+            Y = self.observation.simulate(drawn.X)
+            nothing = np.empty((len(Y), 0))
+            labels = nothing if self.word is None else self.word.on_members(Y, drawn.rng)
+            drawn.shown = _Shown(Y, labels)
+        return drawn.shown
 
 
 def log_density(gaussian: Gaussian, X: FloatArray) -> FloatArray:

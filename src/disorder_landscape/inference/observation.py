@@ -73,9 +73,16 @@ class Observation:
             np.sort(rng.choice(n, max(min(FEW, n), round(n * np.sqrt(share))), replace=False))
             for n in (m.mu.size, m.B.size)
         )
-        some = replace(m, G=m.G[np.ix_(mu, B)], mu=m.mu[mu], B=m.B[B])
-        part = replace(self, measurement=some)
+        part = self.at(mu, B, np.arange(m.bias.size))
         return part if part.data.size >= share * self.data.size / 2 else self
+
+    def at(
+        self, mu: NDArray[np.int64], B: NDArray[np.int64], bias: NDArray[np.int64]
+    ) -> Observation:
+        """Return an observation of what was measured at the points of these indices."""
+        m = self.measurement
+        some = replace(m, G=m.G[np.ix_(mu, B, bias)], mu=m.mu[mu], B=m.B[B], bias=m.bias[bias])
+        return replace(self, measurement=some)
 
     def conductances(self, X: FloatArray) -> FloatArray:
         """Return conductances of members in e²/h, shape (member, mu, B, bias, channel)."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from disorder_landscape.inference.observation import Observation
+from disorder_landscape.inference.word import Said
 from disorder_landscape.physics.parameters import FloatArray
 
 RIDGES = np.logspace(-1, 1.5, 6)
@@ -28,13 +29,20 @@ def variance_about_lines(X: FloatArray, Y: FloatArray, weight: FloatArray) -> Fl
 
 
 def learn(
-    observation: Observation, z: FloatArray, Y: FloatArray, left: FloatArray, weight: FloatArray
+    observation: Observation,
+    z: FloatArray,
+    Y: FloatArray,
+    left: FloatArray,
+    weight: FloatArray,
+    said: Said | None = None,
 ) -> tuple[FloatArray, FloatArray]:
     """Learn what members z (member, unknown) are from what they show, Y (member, datum).
 
     Ridge regression in the space of the members, on data in units of their noise and of what lines
     leave of them, `left` (datum,). The members show no noise of their own: what the measurement's
-    does to the answer is known without drawing any.
+    does to the answer is known without drawing any. What a network says of them, and of the
+    measurement, is regressed on as well, with as much weight as all data that lines leave as they
+    are: far away it counts, near the answer hardly.
 
     Parameters
     ----------
@@ -42,6 +50,7 @@ def learn(
     z, Y : array, shapes (member, unknown) and (member, datum)
     left : array, shape (datum,)
     weight : array, shape (member,)
+    said : Said, optional
 
     Returns
     -------
@@ -55,7 +64,14 @@ def learn(
     scale = np.sqrt(observation.variance + left)
     A, target = root * (Y - middle) / scale, root * (z - center)
     of_noise = (A * (observation.variance / scale**2)) @ A.T
-    values, vectors = np.linalg.eigh(A @ A.T)
+    kernel, shown = A @ A.T, A @ ((observation.data - middle) / scale)
+    if said is not None:
+        mean = weight @ said.of_members / total
+        deviation = np.sqrt(weight @ (said.of_members - mean) ** 2 / total)
+        unit = deviation * np.sqrt(mean.size / middle.size)
+        W = root * (said.of_members - mean) / unit
+        kernel, shown = kernel + W @ W.T, shown + W @ ((said.of_data - mean) / unit)
+    values, vectors = np.linalg.eigh(kernel)
     along = vectors.T @ target
     found: list[tuple[FloatArray, FloatArray]] = []
     for ridge in total * RIDGES:
@@ -64,5 +80,4 @@ def learn(
         left_out = ridge * slope / own[:, None]
         found.append((slope, left_out.T @ left_out / total + slope.T @ of_noise @ slope))
     slope, error = min(found, key=lambda one: float(np.trace(one[1])))
-    shown = A @ ((observation.data - middle) / scale)
     return np.asarray(center + shown @ slope), error

@@ -26,10 +26,11 @@ from typing import Any, Self
 
 import numpy as np
 
-from disorder_landscape.inference.members import Members
+from disorder_landscape.inference.members import MOST, Members
 from disorder_landscape.inference.observation import Observation, overall_misfit
 from disorder_landscape.inference.regression import learn, variance_about_lines
 from disorder_landscape.inference.unknowns import Gaussian
+from disorder_landscape.inference.word import Word
 
 Recall = Callable[[str, Callable[[], dict[str, Any]]], dict[str, Any]]
 """`Checkpoint.recall`: returns the result of a name, calculated now or before."""
@@ -65,6 +66,13 @@ class RoundSettings:
     narrower: float = 0.95
     """… by this factor at least: these lead nowhere."""
     rounds: int = 50
+    most: int = MOST
+    """Members of this and of earlier rounds that are kept."""
+
+
+WITH_WORD = RoundSettings(members_per_unknown=20.0, most=2 * MOST, wider=1.1)
+"""Where a network's word on each wire is heard, which is where components are many. With twice the
+members the error of what they teach is known well enough to draw the next ones less widely."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,15 +103,27 @@ def rounds(
     seed: list[int],
     settings: RoundSettings,
     recall: Recall = lambda name, calculate: calculate(),
+    word: Word | None = None,
 ) -> Iterator[Round]:
     """Yield round after round, until the conductances are straight or rounds no longer help.
 
     Each is a function of the one before and of (seed, its number).
+
+    Parameters
+    ----------
+    observation : Observation
+    start : Gaussian
+    seed : list of int
+    settings : RoundSettings
+    recall : callable, optional
+        `Checkpoint.recall`.
+    word : Word, optional
+        Of a network, to regress on besides the data; these are then those on its grid.
     """
     least, narrowest, since = np.inf, np.inf, 0
     share, distribution = settings.share, start
     count = max(settings.least_members, round(settings.members_per_unknown * start.mean.size))
-    members = _members(observation, share, seed)
+    members = _members(observation, share, seed, settings, word)
     for number in range(settings.rounds):
         members.draw(distribution, count, np.random.default_rng([*seed, number, 1]))
         make = partial(_round, members, distribution, settings)
@@ -119,23 +139,32 @@ def rounds(
             if share == 1 or least > settings.fine:
                 return
             share, since, least, narrowest = 1.0, 0, np.inf, np.inf
-            members = _members(observation, share, seed)
+            members = _members(observation, share, seed, settings, word)
         distribution = one.distribution
 
 
-def _members(observation: Observation, share: float, seed: list[int]) -> Members:
-    return Members(observation.on_some_lines(share, np.random.default_rng(seed)))
+def _members(
+    observation: Observation,
+    share: float,
+    seed: list[int],
+    settings: RoundSettings,
+    word: Word | None,
+) -> Members:
+    if word is not None and share < 1:
+        return Members(word.seen, word, settings.most)
+    some = observation.on_some_lines(share, np.random.default_rng(seed))
+    return Members(some, most=settings.most)
 
 
 def _round(members: Members, proposal: Gaussian, settings: RoundSettings) -> dict[str, Any]:
     """Simulate the members, and regress the unknowns on what they show: `Round.to_dict`."""
     observation = members.observation
     unknowns, prior = observation.unknowns, observation.unknowns.prior
-    X, Y, weight = members.weighted()
+    X, Y, weight, said = members.weighted()
     root = np.linalg.cholesky(proposal.covariance)
     z = np.linalg.solve(root, (X - proposal.mean).T).T
     left = variance_about_lines(z, Y, weight)
-    at, error = learn(observation, z, Y, left, weight)
+    at, error = learn(observation, z, Y, left, weight, said)
     share, directions = np.linalg.eigh(error)
     share = np.clip(share, settings.least_shrinking**2, 1 - 1e-3)
     error = (directions * share) @ directions.T

@@ -15,6 +15,7 @@ from zipfile import BadZipFile
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from disorder_landscape.arguments import ArgumentError, require
@@ -31,6 +32,9 @@ from disorder_landscape.physics.labels import AXES
 from disorder_landscape.physics.parameters import FloatArray
 
 NETWORK, SCALER, CONFIG, METRICS = "network.keras", "scaler.json", "config.json", "metrics.json"
+
+SAME_POINT = 1e-6
+"""Two points of a grid are the same that are as near, in meV or T: room for float32 files."""
 
 _MODEL = "be a folder written by `landscape train`"
 
@@ -86,21 +90,42 @@ class TrainedModel:
         save_network(network, folder / NETWORK)
 
 
-def check_grid(G: xr.Dataset, config: DatasetConfig, name: str = "G") -> None:
-    """Raise an ArgumentError unless G is given on the configuration's (μ, B, V_bias) grid."""
+def points_of_grid(
+    config: DatasetConfig, axes: Mapping[str, FloatArray], name: str
+) -> tuple[NDArray[np.int64], ...]:
+    """Return which points of mu, B and bias are those of a network's grid, in its order.
+
+    Raises
+    ------
+    ArgumentError
+        Of the given argument name, if one of the configuration's points is missing.
+    """
     grids = {"mu": config.mu, "B": config.B, "bias": np.array(config.bias)}
-    differ = [
-        axis
+    far = {
+        axis: np.abs(axes.get(axis, np.empty(0))[None] - grids[axis][:, None]) > SAME_POINT
         for axis in AXES
-        if axis not in G.coords
-        or G[axis].shape != grids[axis].shape
-        or not np.allclose(G[axis], grids[axis], rtol=0, atol=1e-6)  # room for float32 files
-    ]
-    must = "be on the grid the network was trained on (" + ", ".join(
+    }
+    differ = [axis for axis in AXES if far[axis].all(axis=1).any()]
+    must = "hold the grid the network was trained on (" + ", ".join(
         f"{axis}: {len(grids[axis])} points from {grids[axis][0]:g} to {grids[axis][-1]:g}"
         for axis in AXES
     )
     require(not differ, name, must + ")", f"it differs in {', '.join(differ)}")
+    return tuple(far[axis].argmin(axis=1) for axis in AXES)
+
+
+def on_grid_of(config: DatasetConfig, G: xr.Dataset, name: str = "G") -> xr.Dataset:
+    """Return what a network sees of conductances: those on its grid, of maybe more points.
+
+    Raises
+    ------
+    ArgumentError
+        As `points_of_grid`.
+    """
+    axes = {axis: G[axis].to_numpy() for axis in AXES if axis in G.coords and G[axis].ndim == 1}
+    points = dict(zip(AXES, points_of_grid(config, axes, name), strict=True))
+    same = all(np.array_equal(points[axis], np.arange(G.sizes[axis])) for axis in AXES)
+    return G if same else G.isel(points)
 
 
 def load_model(folder: str | Path) -> TrainedModel:

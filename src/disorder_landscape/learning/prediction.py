@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from disorder_landscape.learning.model import TrainedModel, check_grid, load_model
+from disorder_landscape.learning.model import TrainedModel, load_model, on_grid_of
 from disorder_landscape.learning.scaling import conductance_array
 from disorder_landscape.physics.disorder import potential_from_components
 from disorder_landscape.physics.labels import labelled
@@ -21,8 +21,8 @@ def predict(model: str | Path | TrainedModel, G: xr.Dataset) -> xr.Dataset:
     model : path or TrainedModel
         Folder of a trained model, or what `load_model` made of it.
     G : Dataset
-        Variables G_LL, G_RR, G_LR, G_RL in e²/h on the model's (mu, B, bias) grid, dimensions in
-        any order; one wire, or several along the dimension realization.
+        Variables G_LL, G_RR, G_LR, G_RL in e²/h on the model's (mu, B, bias) grid, or one that
+        holds it, dimensions in any order; one wire, or several along the dimension realization.
 
     Returns
     -------
@@ -34,13 +34,12 @@ def predict(model: str | Path | TrainedModel, G: xr.Dataset) -> xr.Dataset:
     Raises
     ------
     ArgumentError
-        If G lacks a variable, holds NaN or is on another grid, or the folder holds no model.
+        If G lacks a variable, holds NaN or lacks a point of the grid, or the folder holds no model.
     """
     if not isinstance(model, TrainedModel):
         model = load_model(model)
     dataset = model.config.dataset
-    X = conductance_array(G)
-    check_grid(G, dataset)
+    X = conductance_array(on_grid_of(dataset, G))
     Y = model.predict_labels(X)
     columns = dict(zip(model.labels.names, Y.T, strict=True))
     components = Y[:, : dataset.components]

@@ -26,7 +26,7 @@ from disorder_landscape.learning.curves import Epoch, plot_curves, write_curves
 from disorder_landscape.learning.ensembles import combine, member_configs
 from disorder_landscape.learning.examples import Examples, chosen, split
 from disorder_landscape.learning.metrics import Scores, score
-from disorder_landscape.learning.model import METRICS, TrainedModel, check_grid, read_model_file
+from disorder_landscape.learning.model import METRICS, TrainedModel, on_grid_of, read_model_file
 from disorder_landscape.learning.networks import build_network
 from disorder_landscape.learning.scaling import (
     conductance_array,
@@ -80,7 +80,7 @@ def train(
     made_with = dataset.attrs.get("config_hash")
     but = f"its hash is {made_with}, the config's {config.dataset.hash}"
     require(made_with == config.dataset.hash, "dataset", "be the one the config describes", but)
-    check_grid(dataset, config.dataset, "dataset")
+    dataset = on_grid_of(config.dataset, dataset, "dataset")
     training, test = split(dataset.sizes["realization"], config.training.test_fraction)
     used = chosen(training, config.training.realizations, config.training.seed)
     X = conductance_array(dataset)
