@@ -178,6 +178,8 @@ def test_a_networks_word_is_believed_as_far_as_it_is_right():
     without = learn(nothing, z, Y, left, one)[1]
     assert np.trace(without) / SIZE > 0.9
     found = [learn(nothing, z, Y, left, one, Said(3 * labels, 3 * word)) for word in heard]
+    same = Said(np.column_stack([labels, one]), np.append(heard[0], 2.0))  # one label never varies
+    assert np.isfinite(learn(nothing, z, Y, left, one, same)[0]).all()
     error = found[0][1]
     assert 0.2 < np.trace(error) / SIZE < 0.35  # 0.2 is Bayes' theorem's
     actual = np.array([at for at, _ in found]) - truth

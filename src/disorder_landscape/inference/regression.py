@@ -68,9 +68,10 @@ def learn(
     if said is not None:
         mean = weight @ said.of_members / total
         deviation = np.sqrt(weight @ (said.of_members - mean) ** 2 / total)
-        unit = deviation * np.sqrt(mean.size / middle.size)
-        W = root * (said.of_members - mean) / unit
-        kernel, shown = kernel + W @ W.T, shown + W @ ((said.of_data - mean) / unit)
+        varies = deviation > 1e-6 * np.abs(mean)  # of one that does not, rounding is left
+        unit = deviation[varies] * np.sqrt(mean.size / middle.size)
+        W = root * (said.of_members - mean)[:, varies] / unit
+        kernel, shown = kernel + W @ W.T, shown + W @ ((said.of_data - mean)[varies] / unit)
     values, vectors = np.linalg.eigh(kernel)
     along = vectors.T @ target
     found: list[tuple[FloatArray, FloatArray]] = []
