@@ -7,7 +7,6 @@ import numpy as np
 from disorder_landscape.inference.observation import Observation
 from disorder_landscape.inference.unknowns import Gaussian, Unknowns
 from disorder_landscape.learning.model import TrainedModel, points_of_grid
-from disorder_landscape.physics.labels import AXES
 from disorder_landscape.physics.parameters import FloatArray
 
 WIRES_PER_UNKNOWN = 4
@@ -51,7 +50,7 @@ def network_guess(
 
 def as_seen(model: TrainedModel, observation: Observation) -> Observation:
     """Return the part of an observation that is on the network's grid."""
-    axes = {axis: getattr(observation.measurement, axis) for axis in AXES}
+    axes = vars(observation.measurement)
     return observation.at(*points_of_grid(model.config.dataset, axes, "measurement"))
 
 

@@ -17,17 +17,16 @@ from disorder_landscape.inference.inversion import (
     best,
     invert,
     verdict,
+    word_heard,
 )
 from disorder_landscape.inference.measurement import measurement_of, settings_of
 from disorder_landscape.inference.observation import Observation, noise_of_channels
-from disorder_landscape.inference.rounds import RoundSettings
 from disorder_landscape.inference.unknowns import Unknowns
-from disorder_landscape.inference.word import word_on
 from disorder_landscape.learning.model import (
     TrainedModel,
     load_model,
     load_model_config,
-    on_grid_of,
+    points_of_grid,
 )
 from disorder_landscape.learning.scaling import NOISE_FLOOR
 from disorder_landscape.physics.labels import AXES, CONDUCTANCES, labelled
@@ -106,11 +105,11 @@ def infer(
     whole = bool(np.isfinite(measurement.G).all())
     trained = None
     if network and whole:
-        on_grid_of(config, G, "measurement")
+        points_of_grid(config, vars(measurement), "measurement")
         trained = model if isinstance(model, TrainedModel) else load_model(model)
     observation = Observation(measurement, Unknowns(config), errors)
     start = "the prior" if trained is None else "the network's guess"
-    if word_on(trained, observation, RoundSettings.share) is not None:
+    if word_heard(trained, observation) is not None:
         start = "the prior, with the network's word on each wire"
     if network and not whole:
         start += ", because the network needs all conductances and some are missing"

@@ -15,7 +15,7 @@ from disorder_landscape.inference.observation import Observation, objective, squ
 from disorder_landscape.inference.polish import polish
 from disorder_landscape.inference.rounds import WITH_WORD, Recall, RoundSettings, rounds
 from disorder_landscape.inference.unknowns import Gaussian
-from disorder_landscape.inference.word import word_on
+from disorder_landscape.inference.word import Word, word_on
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.physics.parameters import FloatArray
 
@@ -99,7 +99,7 @@ def invert(
     observation : Observation
     model : TrainedModel, optional
         The network that guesses; without it the disorder model's prior is where attempts start.
-        They do, too, if its word on each wire is heard (`word_on`), which says more than a guess.
+        They do, too, where its word on each wire is heard (`word_heard`), better than a guess.
     seed : int
     settings : InversionSettings, optional
     told : callable
@@ -108,7 +108,7 @@ def invert(
         What an interrupted run has found.
     """
     recall = (checkpoint if checkpoint is not None else Checkpoint()).recall
-    word = word_on(model, observation, RoundSettings.share)
+    word = word_heard(model, observation)
     if settings is None:
         settings = InversionSettings(RoundSettings() if word is None else WITH_WORD)
     attempts: list[Attempt] = []
@@ -130,6 +130,11 @@ def invert(
         if verdict(observation, attempts) != NOT_CONVERGED:
             break
     return attempts
+
+
+def word_heard(model: TrainedModel | None, observation: Observation) -> Word | None:
+    """Return the network's word on each wire, if it needs no more data than rounds look at."""
+    return word_on(model, observation, RoundSettings.share)
 
 
 def _recalled(recall: Recall, name: str, make: Callable[[], Gaussian]) -> Gaussian:
