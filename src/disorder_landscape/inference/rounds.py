@@ -47,6 +47,8 @@ class RoundSettings:
     share: float = 0.25
     """Of the data, the same in all rounds until these are done, when they go on with all data: far
     closer, where there may be more than one optimum again, some deviations apart. …"""
+    members_on_all: float = 0.5
+    """… Then this part of the members is enough: so close by, lines explain nearly all. …"""
     fine: float = 2.0
     """… So they do where they stand still with less than this many times the noise unexplained:
     then it is the noise that hides the rest."""
@@ -139,6 +141,7 @@ def rounds(
             if share == 1 or least > settings.fine:
                 return
             share, since, least, narrowest = 1.0, 0, np.inf, np.inf
+            count = round(settings.members_on_all * count)
             members = _members(observation, share, seed, settings, word)
         distribution = one.distribution
 
