@@ -20,7 +20,12 @@ from disorder_landscape.inference.members import MOST, Members, log_density
 from disorder_landscape.inference.observation import Observation, noise_of_channels
 from disorder_landscape.inference.polish import linearise, polish
 from disorder_landscape.inference.posterior import independence_chain, predictive_p
-from disorder_landscape.inference.regression import RIDGES, learn, variance_about_lines
+from disorder_landscape.inference.regression import (
+    RIDGES,
+    learn,
+    sum_of_products,
+    variance_about_lines,
+)
 from disorder_landscape.inference.rounds import Round, RoundSettings, rounds
 from disorder_landscape.inference.unknowns import Gaussian, Unknowns
 from disorder_landscape.inference.word import Said
@@ -161,10 +166,23 @@ def test_leaving_out_is_what_the_closed_form_says(linear):
                 ((A - own).T * weight[kept]) @ (z[kept] - mean),
             )
             errors.append((Y[i] / 10 - own) @ fit + mean - z[i])
-        return (np.array(errors).T * weight) @ np.array(errors) / weight.sum()
+        return np.sqrt(weight / weight.sum())[:, None] * errors
 
-    best = min((without(weight.sum() * ridge) for ridge in RIDGES), key=np.trace)
-    np.testing.assert_allclose(error, best, rtol=1e-6, atol=1e-9)
+    best = min((without(weight.sum() * ridge) for ridge in RIDGES), key=np.linalg.norm)
+    np.testing.assert_allclose(error, sum_of_products(best), rtol=1e-6, atol=1e-9)
+
+
+def test_no_direction_is_known_best_by_chance():
+    """Errors alike in all directions are found so by few members; others are told apart by many."""
+    rng = np.random.default_rng(13)
+    errors = rng.normal(size=(60, 12)) / np.sqrt(60)
+    raw, found = (np.linalg.eigvalsh(S) for S in (errors.T @ errors, sum_of_products(errors)))
+    assert raw[0] < 0.5
+    assert 0.8 < found[0] <= found[-1] < 1.2
+    assert found.sum() == pytest.approx(raw.sum())
+    unlike = rng.normal(size=(2000, 12)) * np.geomspace(0.01, 1, 12) / np.sqrt(2000)
+    found = np.linalg.eigvalsh(sum_of_products(unlike))
+    np.testing.assert_allclose(found, np.geomspace(0.01, 1, 12) ** 2, rtol=0.2, atol=2e-3)
 
 
 def test_a_networks_word_is_believed_as_far_as_it_is_right():

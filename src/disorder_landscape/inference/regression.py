@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from sklearn.covariance import ledoit_wolf_shrinkage
 
 from disorder_landscape.inference.observation import Observation
 from disorder_landscape.inference.word import Said
@@ -74,11 +75,23 @@ def learn(
         kernel, shown = kernel + W @ W.T, shown + W @ ((said.of_data - mean)[varies] / unit)
     values, vectors = np.linalg.eigh(kernel)
     along = vectors.T @ target
-    found: list[tuple[FloatArray, FloatArray]] = []
+    found: list[tuple[FloatArray, FloatArray, FloatArray]] = []
     for ridge in total * RIDGES:
         slope = vectors @ (along / (values + ridge)[:, None])
         own = ridge * (vectors**2 @ (1 / (values + ridge))) - weight / total
         left_out = ridge * slope / own[:, None]
-        found.append((slope, left_out.T @ left_out / total + slope.T @ of_noise @ slope))
-    slope, error = min(found, key=lambda one: float(np.trace(one[1])))
-    return np.asarray(center + shown @ slope), error
+        found.append((slope, left_out / np.sqrt(total), slope.T @ of_noise @ slope))
+    slope, left_out, noise = min(found, key=lambda one: (one[1] ** 2).sum() + np.trace(one[2]))
+    return np.asarray(center + shown @ slope), sum_of_products(left_out) + noise
+
+
+def sum_of_products(errors: FloatArray) -> FloatArray:
+    """Return the sum (unknown, unknown) of the products of members' errors (member, unknown).
+
+    Its eigenvalues are farther apart than those of what it stands for, the mean over all members
+    that could have been drawn: the direction that seems to be known best is so by chance. Drawn
+    together as Ledoit and Wolf do (J. Multivar. Anal. 88, 365 (2004)), they lose no truth there.
+    """
+    total = errors.T @ errors
+    part = ledoit_wolf_shrinkage(np.sqrt(len(errors)) * errors, assume_centered=True)
+    return np.asarray((1 - part) * total + part * np.trace(total) / len(total) * np.eye(len(total)))
