@@ -1,4 +1,4 @@
-"""Inversions of wires of 15, 20 and 30 components, from the prior, without any network.
+"""Inversions of wires of 15 and 20 components, without any network, and of 30, with a weak one.
 
 Writes components.csv, a row per inversion. What is there is not repeated: an interrupted run goes
 on. Example: python claims/components.py --components 15 --wires 4

@@ -1,8 +1,9 @@
 """Make the shipped models and test sets from their runs, and SHA256SUMS of all data.
 
 Run from the repository's root, once the runs are evaluated (`make evaluate PRESET=full`,
-PRESET=full_ten_components, PRESET=noisy and PRESET=noisy_ten_components):
-python data_small/make_shipped.py. Names of presets, full or noisy, make theirs only.
+PRESET=full_ten_components, PRESET=noisy and PRESET=noisy_ten_components) or, for the network of
+thirty components, trained: python data_small/make_shipped.py. Names of presets, full or noisy, or
+thirty make theirs only.
 """
 
 import hashlib
@@ -14,7 +15,9 @@ from disorder_landscape.chain import (
     MODELS,
     NOISY,
     NOISY_FROM,
+    THIRTY,
     Run,
+    open_run,
     preset_run,
     read_test_set,
     shipped_model,
@@ -63,7 +66,10 @@ def write_sums() -> None:
 
 
 if __name__ == "__main__":
-    for preset in sys.argv[1:] or PRESETS:
+    made = sys.argv[1:] or [*PRESETS, "thirty"]
+    if "thirty" in made:
+        ship_model(open_run(f"configs/inversions/{THIRTY}.toml"), shipped_model(THIRTY))
+    for preset in (name for name in made if name in PRESETS):
         for model in MODELS:
             run = preset_run(preset, model=model)
             ship_model(run, shipped_model(model, PRESETS[preset]))

@@ -26,6 +26,8 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 SHIPPED = "shipped"
 FIVE, TEN = MODELS = "five_components_and_alpha", "ten_components"
 """The paper's two models, as they are named where they are shipped."""
+THIRTY = "thirty_components"
+"""A network to start inversions from, which is shipped too: configs/inversions."""
 NOISY = "noisy"
 """The preset of networks for measurements with errors, which are shipped too: FIVE_noisy, …"""
 NOISY_FROM = 0.002

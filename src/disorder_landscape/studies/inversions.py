@@ -84,11 +84,12 @@ def carry_out(
 
 def network_of(model: str, noise: float) -> TrainedModel:
     """Return the shipped network for measurements with such errors in e²/h."""
-    return _model(shipped_model(model, noise))
+    return model_of(shipped_model(model, noise))
 
 
 @lru_cache
-def _model(folder: Path) -> TrainedModel:
+def model_of(folder: Path) -> TrainedModel:
+    """Return a trained model, which is read once."""
     return load_model(folder)
 
 
