@@ -14,6 +14,7 @@ from disorder_landscape.inference.inversion import (
     NOT_DESCRIBED,
     Attempt,
     chi_square_excess,
+    same_answer,
     verdict,
 )
 from disorder_landscape.inference.members import MOST, Members, log_density
@@ -413,6 +414,16 @@ def test_one_answer_that_fits_is_enough_where_the_noise_hides_little(linear, noi
     alone = Attempt(answer, data=measured.data, objective=0.0, excess=0.0, rounds=5)
     assert verdict(measured, [alone]) == expected
     assert verdict(measured, [alone, replace(alone, objective=1.0)]) == CONVERGED
+
+
+def test_answers_are_the_same_that_error_bars_allow():
+    """However small the distance is, along the axis that is known best it may be far."""
+    covariance = np.diag([1.0, 1e-6, *np.ones(SIZE - 2)])
+    one = Attempt(Gaussian(np.zeros(SIZE), covariance), np.zeros(40), 0.0, 0.0, 5)
+    observation = Linear(np.zeros(40), np.empty(0))
+    for axis, far, same in [(0, 2.0, True), (1, 1e-3, True), (1, 0.1, False), (0, 6.0, False)]:
+        other = replace(one, answer=Gaussian(far * np.eye(SIZE)[axis], covariance))
+        assert same_answer(observation, one, other) == same
 
 
 def test_noise_by_channel():

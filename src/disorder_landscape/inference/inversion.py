@@ -30,8 +30,9 @@ WRONG_MISFIT = 0.001
 """Difference in e²/h, root mean square, that tells a wrong answer from the right one. If the noise
 hides less, an answer that fits is right; otherwise a second attempt must agree: of 200 wires of ten
 components with errors of 0.01 e²/h, three had a wrong answer that fitted."""
-SAME_ANSWER = 3.0
-"""Two optima are the same where their V are closer than this many of their own deviations."""
+SAME_ANSWER = 2.0
+"""Two optima are the same if they are closer than this many of their own deviations, root mean
+square over the principal axes (in valleys that bend they differ by one or so)."""
 SAME_MISFIT = 0.05
 """Two misfits are the same that differ by less than this part. If the best that can be found is
 twice found to be so bad, in different places even, then it is the model that does no better."""
@@ -205,10 +206,9 @@ def is_surely_right(observation: Observation) -> bool:
 
 def same_answer(observation: Observation, one: Attempt, other: Attempt) -> bool:
     """Return whether two attempts have ended in the same optimum."""
-    unknowns = observation.unknowns
     scatter = max(1.0, _misfit(observation, one))
-    near = SAME_ANSWER * scatter * unknowns.site_deviation(one.answer.covariance)
-    return bool(unknowns.site_distance(other.answer.mean, one.answer.mean) < near)
+    squares = one.answer.squared_distance(other.answer.mean) / one.answer.mean.size
+    return bool(squares < (SAME_ANSWER * scatter) ** 2)
 
 
 def same_misfit(observation: Observation, one: Attempt, other: Attempt) -> bool:
