@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from disorder_landscape.chain import FIVE, TEN
+from disorder_landscape.chain import FIVE, TEN, THIRTY, shipped_model
 from disorder_landscape.claims.derived import fixed_combinations, true_answers
 from disorder_landscape.claims.inversions import (
     SHOWN,
@@ -18,10 +18,11 @@ from disorder_landscape.claims.inversions import (
     unmodelled_table,
 )
 from disorder_landscape.config import DatasetConfig
-from disorder_landscape.inference.inversion import CONVERGED, NOT_CONVERGED
+from disorder_landscape.inference.inversion import CONVERGED, NOT_CONVERGED, word_heard
 from disorder_landscape.inference.measurement import empty_measurement
 from disorder_landscape.physics.parameters import Nanowire
-from disorder_landscape.studies.inversions import KEYS, Task, wrong
+from disorder_landscape.studies.components import measured_grid
+from disorder_landscape.studies.inversions import KEYS, Task, measured_wire, model_of, wrong
 from disorder_landscape.studies.rows import missing, read_rows, write_rows
 from disorder_landscape.studies.uniqueness import NOISE, Setting, information_rows
 from disorder_landscape.studies.unmodelled import KINDS, NOTHING, changed
@@ -86,6 +87,20 @@ def test_the_table_of_more_components_has_a_row_for_each_noise(tmp_path):
     fifteen, twenty = components_table(path).splitlines()[2:]
     assert fifteen == "| 15, 0.01 | 1 | 400 | 0.2, 0.2 | 0.1 | 100 % | 0, 0 | 60 |"
     assert twenty == "| 20, 0.001 | 2 | 400 | 50, 1e+02 | 0.1 | 50 % | 1, 0 | 60 |"
+
+
+def test_the_network_of_thirty_components_knows_something_of_fresh_wires():
+    """It is asked on its own points of the grid, of wires and errors that it has not seen."""
+    observation, _ = measured_wire(measured_grid(30), noise=0.001, index=0)
+    word = word_heard(model_of(shipped_model(THIRTY)), observation)
+    assert word is not None
+    assert word.seen.data.size == observation.data.size / 4
+    prior, rng = observation.unknowns.prior, np.random.default_rng(0)
+    truth = prior.draw(rng, 40)
+    labels = word.on_members(word.seen.simulate(truth), rng)
+    squares = ((labels - truth) ** 2).mean(axis=0) / np.diag(prior.covariance)
+    assert squares[:-1].mean() < 0.7  # the mean of V it does not know
+    assert word.on_data().shape == (31,)
 
 
 def test_the_table_of_what_the_model_lacks_counts_both_checks(tmp_path):

@@ -32,6 +32,18 @@ class Task:
     index: int
 
 
+def measured_grid(components: int) -> DatasetConfig:
+    """Return the disorder model and what is measured of its wires."""
+    return DatasetConfig(
+        realizations=1,
+        components=components,
+        alpha_range=(ALPHA, ALPHA),
+        mu_points=POINTS,
+        B_points=POINTS,
+        bias=tuple(np.linspace(BIAS[0], BIAS[-1], BIASES).round(6).tolist()),
+    )
+
+
 def components_row(task: Task) -> dict[str, object]:
     """Invert the measurement of a fresh wire and compare the answer with the truth.
 
@@ -42,15 +54,7 @@ def components_row(task: Task) -> dict[str, object]:
         the answer; `mahalanobis`, the truth's squared distance in deviations over the number of
         unknowns; and the outcome of `Inverted`.
     """
-    config = DatasetConfig(
-        realizations=1,
-        components=task.components,
-        alpha_range=(ALPHA, ALPHA),
-        mu_points=POINTS,
-        B_points=POINTS,
-        bias=tuple(np.linspace(BIAS[0], BIAS[-1], BIASES).round(6).tolist()),
-    )
-    observation, truth = measured_wire(config, task.noise, task.index)
+    observation, truth = measured_wire(measured_grid(task.components), task.noise, task.index)
     network = model_of(shipped_model(THIRTY)) if task.components == THIRTY_COMPONENTS else None
     found = inverted(observation, network, task.index)
     distance = observation.unknowns.site_distance
