@@ -8,7 +8,8 @@ import pandas as pd
 import pytest
 
 from disorder_landscape.chain import FIVE, TEN, THIRTY, shipped_model
-from disorder_landscape.claims.derived import fixed_combinations, true_answers
+from disorder_landscape.claims.claim import ResultMissingError
+from disorder_landscape.claims.derived import fixed_combinations, thirty_components, true_answers
 from disorder_landscape.claims.inversions import (
     SHOWN,
     accuracy_table,
@@ -87,6 +88,10 @@ def test_the_table_of_more_components_has_a_row_for_each_noise(tmp_path):
     fifteen, twenty = components_table(path).splitlines()[2:]
     assert fifteen == "| 15, 0.01 | 1 | 400 | 0.2, 0.2 | 0.1 | 100 % | 0, 0 | 60 |"
     assert twenty == "| 20, 0.001 | 2 | 400 | 50, 1e+02 | 0.1 | 50 % | 1, 0 | 60 |"
+    with pytest.raises(ResultMissingError, match="30 components"):
+        thirty_components(path)
+    pd.DataFrame([one | {"components": 30} for one in rows]).to_csv(path, index=False)
+    assert thirty_components(path) == pytest.approx(1 - 0.01 / 0.48, rel=1e-3)
 
 
 def test_the_network_of_thirty_components_knows_something_of_fresh_wires():

@@ -30,7 +30,7 @@ def _printed(value: float, digits: int) -> str:
     if abs(value) >= 1000:
         return f"{value:,.0f}"
     near_one = 0.99 <= abs(value) < 1
-    return f"{value:.5f}".rstrip("0") if near_one else f"{value:.{digits}g}"
+    return f"{value:.5f}".rstrip("0").rstrip(".") if near_one else f"{value:.{digits}g}"
 
 
 def stated(claim: Claim) -> str:
