@@ -17,6 +17,7 @@ from scipy.stats import permutation_test, spearmanr
 from disorder_landscape.claims.claim import ResultMissingError
 from disorder_landscape.inference.inversion import CONVERGED
 from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.studies.components import THIRTY_COMPONENTS
 from disorder_landscape.studies.crossings import (
     R2_AIMED_AT,
     fit_power_law,
@@ -28,8 +29,6 @@ from disorder_landscape.studies.table import read_table
 
 SMALL_NOISE = 0.01
 """In e²/h."""
-MANY = 30
-"""Component count that the paper expects 1.2 million core-hours for."""
 FINE_TUNED = 10
 """Component count that the paper leaves out of its second fit of Fig. 2."""
 
@@ -114,11 +113,11 @@ def fixed_combinations(table: Path) -> float:
 
 
 def thirty_components(table: Path) -> float:
-    """Return R² of V over the inversions of wires of MANY components."""
+    """Return R² of V over the inversions of wires of THIRTY_COMPONENTS."""
     rows = _rows(table, "site_error")
-    many = rows[rows["components"] == MANY]
+    many = rows[rows["components"] == THIRTY_COMPONENTS]
     if many.empty:
-        raise ResultMissingError(f"{table.name} has no wires of {MANY} components yet")
+        raise ResultMissingError(f"{table.name} has no wires of {THIRTY_COMPONENTS} components yet")
     return float(1 - (many["site_error"] ** 2).sum() / (many["prior_error"] ** 2).sum())
 
 

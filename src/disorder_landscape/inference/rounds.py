@@ -48,10 +48,10 @@ class RoundSettings:
     """Of the data, the same in all rounds until these are done, when they go on with all data: far
     closer, where there may be more than one optimum again, some deviations apart. …"""
     members_on_all: float = 0.5
-    """… Then this part of the members is enough: so close by, lines explain nearly all. …"""
+    """… Then this part of the members is enough: so close by, lines explain nearly all."""
     fine: float = 2.0
-    """… So they do where they stand still with less than this many times the noise unexplained:
-    then it is the noise that hides the rest."""
+    """Rounds go on with all data, too, where they stand still with less than this many times the
+    noise unexplained: then it is the noise that hides the rest."""
     wider: float = 1.2
     """The next round's wires are drawn this much more widely than the answer says, …"""
     nearer: float = 0.8
