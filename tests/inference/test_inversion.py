@@ -228,7 +228,7 @@ def test_a_network_of_few_points_has_its_word_on_each_wire():
     assert word_on(model, observation, 0.2) is None
     word = word_on(model, observation, 0.25)
     np.testing.assert_array_equal(word.seen.measurement.G, whole.G[::2, ::3])
-    np.testing.assert_allclose(word.on_data(), whole.G[0, 0, 0, :3], atol=1e-6)
+    np.testing.assert_allclose(word.on_data, whole.G[0, 0, 0, :3], atol=1e-6)
     Y = np.zeros((200, word.seen.data.size))
     labels = word.on_members(Y, np.random.default_rng(0))
     np.testing.assert_allclose(labels.std(axis=0), NOISE, rtol=0.2)

@@ -105,7 +105,7 @@ def test_the_network_of_thirty_components_knows_something_of_fresh_wires():
     labels = word.on_members(word.seen.simulate(truth), rng)
     squares = ((labels - truth) ** 2).mean(axis=0) / np.diag(prior.covariance)
     assert squares[:-1].mean() < 0.7  # the mean of V it does not know
-    assert word.on_data().shape == (31,)
+    assert word.on_data.shape == (31,)
 
 
 def test_the_table_of_what_the_model_lacks_counts_both_checks(tmp_path):

@@ -94,7 +94,7 @@ class Members:
             if here.any()
         ]
         Y, labels = (np.concatenate(parts) for parts in zip(*shown, strict=True))
-        said = None if self.word is None else Said(labels, self.word.on_data())
+        said = None if self.word is None else Said(labels, self.word.on_data)
         return Weighted(X[counts], Y, weight[counts], said)
 
     def _simulated(self, drawn: _Drawn) -> _Shown:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from sklearn.covariance import ledoit_wolf_shrinkage
+from sklearn.covariance import ledoit_wolf
 
 from disorder_landscape.inference.observation import Observation
 from disorder_landscape.inference.word import Said
@@ -92,6 +92,4 @@ def sum_of_products(errors: FloatArray) -> FloatArray:
     that could have been drawn: the direction that seems to be known best is so by chance. Drawn
     together as Ledoit and Wolf do (J. Multivar. Anal. 88, 365 (2004)), they lose no truth there.
     """
-    total = errors.T @ errors
-    part = ledoit_wolf_shrinkage(np.sqrt(len(errors)) * errors, assume_centered=True)
-    return np.asarray((1 - part) * total + part * np.trace(total) / len(total) * np.eye(len(total)))
+    return np.asarray(ledoit_wolf(np.sqrt(len(errors)) * errors, assume_centered=True)[0])

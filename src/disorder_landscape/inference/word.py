@@ -9,6 +9,7 @@ drawn about the present answer.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -37,8 +38,9 @@ class Word:
         """Return what it says of members' data (member, datum) if they had errors, too."""
         return self._labels(Y + np.sqrt(self.seen.variance) * rng.normal(size=Y.shape))
 
+    @cached_property
     def on_data(self) -> FloatArray:
-        """Return what it says of the measurement, shape (label,)."""
+        """What it says of the measurement, shape (label,)."""
         return np.asarray(self._labels(self.seen.data[None])[0])
 
     def _labels(self, Y: FloatArray) -> FloatArray:
