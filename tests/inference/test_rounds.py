@@ -17,7 +17,7 @@ from disorder_landscape.inference.inversion import (
     same_answer,
     verdict,
 )
-from disorder_landscape.inference.members import MOST, Members, log_density
+from disorder_landscape.inference.members import Members, log_density
 from disorder_landscape.inference.observation import Observation, noise_of_channels
 from disorder_landscape.inference.polish import linearise, polish
 from disorder_landscape.inference.posterior import independence_chain, predictive_p
@@ -217,24 +217,24 @@ def test_members_of_earlier_proposals_count_as_if_drawn_from_the_last(linear):
     rng, wide = np.random.default_rng(10), UNKNOWNS.prior
     last = Gaussian(wide.mean + 0.3 * np.sqrt(np.diag(wide.covariance)), 0.8 * wide.covariance)
     elsewhere = replace(last, mean=last.mean + 20 * np.sqrt(np.diag(wide.covariance)))
-    members = Members(Counting(linear.data, linear.slope))
+    members = Members(Counting(linear.data, linear.slope), most=2000)
     for proposal in (elsewhere, wide, last):
-        members.draw(proposal, MOST // 3, rng)
-    alone = Members(members.observation)
+        members.draw(proposal, 666, rng)
+    alone = Members(members.observation, most=2000)
     alone.draw(last, 600, rng)
     np.testing.assert_allclose(alone.weighted().weight, 1.0)
     simulated.clear()
     X, Y, weight, said = members.weighted()
     assert said is None
-    assert simulated == [MOST // 3, MOST // 3]
+    assert simulated == [666, 666]
     np.testing.assert_allclose(Y, X @ linear.slope)
     z = np.linalg.solve(np.linalg.cholesky(last.covariance), (X - last.mean).T).T
     assert 400 < weight.sum() ** 2 / (weight**2).sum()
     np.testing.assert_allclose(weight @ z / weight.sum(), 0.0, atol=0.15)
     np.testing.assert_allclose((z.T * weight) @ z / weight.sum(), np.eye(SIZE), atol=0.2)
     members.draw(last, 10, rng)  # the oldest are forgotten
-    assert len(members.weighted().X) <= 2 * (MOST // 3) + 10
-    assert simulated == [MOST // 3, MOST // 3, 10]
+    assert len(members.weighted().X) <= 2 * 666 + 10
+    assert simulated == [666, 666, 10]
 
 
 def test_densities_are_scipys():

@@ -20,9 +20,7 @@ from disorder_landscape.inference.word import Said, Word
 from disorder_landscape.physics.parameters import FloatArray
 
 LEAST_WEIGHT = 1e-3
-"""Members of less weight are not looked at, …"""
-MOST = 2000
-"""… and, if no number is given, the oldest are forgotten where there are more than so many."""
+"""Members of less weight are not looked at."""
 
 
 class Weighted(NamedTuple):
@@ -60,15 +58,15 @@ class Members:
     ----------
     observation : Observation
         Which data are simulated.
-    word : Word, optional
-        Of the network on these data.
     most : int
         The oldest are forgotten where there are more.
+    word : Word, optional
+        Of the network on these data.
     """
 
     observation: Observation
+    most: int
     word: Word | None = None
-    most: int = MOST
     _drawn: list[_Drawn] = field(default_factory=list)
 
     def draw(self, proposal: Gaussian, count: int, rng: np.random.Generator) -> None:

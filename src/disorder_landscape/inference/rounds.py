@@ -26,7 +26,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from disorder_landscape.inference.members import MOST, Members
+from disorder_landscape.inference.members import Members
 from disorder_landscape.inference.observation import Observation, overall_misfit
 from disorder_landscape.inference.regression import learn, variance_about_lines
 from disorder_landscape.inference.unknowns import Gaussian
@@ -68,11 +68,11 @@ class RoundSettings:
     narrower: float = 0.95
     """… by this factor at least: these lead nowhere."""
     rounds: int = 50
-    most: int = MOST
+    most: int = 2000
     """Members of this and of earlier rounds that are kept."""
 
 
-WITH_WORD = RoundSettings(members_per_unknown=20.0, most=2 * MOST, wider=1.1)
+WITH_WORD = RoundSettings(members_per_unknown=20.0, most=4000, wider=1.1)
 """Where a network's word on each wire is heard, which is where components are many. With twice the
 members the error of what they teach is known well enough to draw the next ones less widely."""
 
@@ -154,9 +154,9 @@ def _members(
     word: Word | None,
 ) -> Members:
     if word is not None and share < 1:
-        return Members(word.seen, word, settings.most)
+        return Members(word.seen, settings.most, word)
     some = observation.on_some_lines(share, np.random.default_rng(seed))
-    return Members(some, most=settings.most)
+    return Members(some, settings.most)
 
 
 def _round(members: Members, proposal: Gaussian, settings: RoundSettings) -> dict[str, Any]:
