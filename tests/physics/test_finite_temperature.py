@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 import disorder_landscape as dl
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.physics import energy_plan, finite_temperature
-from disorder_landscape.physics.disorder import disorder_realization
+from disorder_landscape.physics.disorder import disorder_realization, potential_from_components
 from disorder_landscape.physics.parameters import BIAS
 from disorder_landscape.physics.quadrature import thermal_quadrature
 from disorder_landscape.physics.transport import exact_average
@@ -53,6 +53,29 @@ def test_two_poles_that_have_just_left_the_imaginary_axis():
     arguments = np.array([0.15]), np.array([0.7]), np.array(BIAS), 0.05
     found, estimate, _ = exact_average([random_wire(5, sites=100)], *arguments)
     exact = thermal_quadrature([random_wire(5, sites=100)], *arguments)
+    assert abs(found - exact.conductance).max() <= estimate.item() + exact.error.item()
+
+
+def test_a_level_of_rounding_errors_takes_nothing_from_a_low_one():
+    """With 16 nodes there is one at zero beside that at 105 neV; G_LL was 0.08 e²/h too large."""
+    components = np.array(
+        [
+            0.6471930371977946,
+            -1.815392761441577,
+            1.2266385600725525,
+            -2.440481260733323,
+            0.7198932178411692,
+            -1.1309145405780494,
+            -2.3986393420615864,
+            0.6979691328109064,
+            -1.4962140088667506,
+            -1.288146933342429,
+        ]
+    )
+    wire = dl.Nanowire(potential_from_components(components, 300, 0.006685090660780135))
+    arguments = np.array([0.6 * 3 / 19]), np.array([0.8 * 8 / 19]), np.array(BIAS), 0.05
+    found, estimate, _ = exact_average([wire], *arguments)
+    exact = thermal_quadrature([wire], *arguments)
     assert abs(found - exact.conductance).max() <= estimate.item() + exact.error.item()
 
 

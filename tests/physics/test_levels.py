@@ -11,7 +11,7 @@ from disorder_landscape.physics import eigen, finite_temperature, jacobi
 from disorder_landscape.physics.energy_plan import CHECKS, energy_plan
 from disorder_landscape.physics.fast_solver import prepare
 from disorder_landscape.physics.hamiltonian import wire_hamiltonian
-from disorder_landscape.physics.levels import wire_levels
+from disorder_landscape.physics.levels import _complete_low_levels, wire_levels
 from disorder_landscape.physics.parameters import BIAS, BOLTZMANN
 from disorder_landscape.physics.vectors import (
     WIDTH,
@@ -90,11 +90,11 @@ def test_dependent_directions_are_left_out():
     omega, W = np.linspace(0.1, 1.0, 5), WIDTH
     shape = (W, omega.size, 8, 8)
     G, slope = np.zeros(shape), np.zeros(shape)
-    levels, weights = [], []
+    energies, weights = [], []
     signs = np.where(np.arange(8)[:, None] // 4 == np.arange(8) // 4, 1, 0)
     for l in range(W):
         E, w = np.sort(rng.uniform(0.3, 2.0, 3 + l)), rng.normal(size=(3 + l, 8))
-        levels.append(E)
+        energies.append(E)
         weights.append(w)
         for k, x in enumerate(omega):
             for e, a in zip(E, w, strict=True):
@@ -112,9 +112,38 @@ def test_dependent_directions_are_left_out():
         seen = np.abs(weight[l, :count]).sum(axis=1) > 1e-9
         assert seen.sum() == 3 + l
         by_size = np.argsort(E[l, :count][seen])
-        assert_allclose(E[l, :count][seen][by_size], levels[l], atol=1e-8)
+        assert_allclose(E[l, :count][seen][by_size], energies[l], atol=1e-8)
         for mine, other in zip(weight[l, :count][seen][by_size], weights[l], strict=True):
             assert_allclose(np.outer(mine, mine), np.outer(other, other), atol=1e-6)
+
+
+RIGHT, LEFT = np.array([0.0, 0.0, 0.3, 0.1]), np.array([0.5, -0.2, 0.0, 0.0])
+NOTHING = np.zeros(4)
+
+
+@pytest.mark.parametrize(
+    ("E", "found", "true"),
+    [  # what is known of b of each level at first, and what it is
+        # a level of rounding errors, and what Eb says wrongly of the other
+        ([0.0, 1e-4], [(1e-6 * RIGHT, NOTHING), (RIGHT, 1.004 * LEFT)], [NOTHING, LEFT]),
+        ([4e-5, 1e-4], [(1e-6 * RIGHT, 0.01 * LEFT), (RIGHT, 0.996 * LEFT)], [0.01 * LEFT, LEFT]),
+        # a Majorana mode whose partner is out of sight
+        ([0.0, 0.1], [(NOTHING, NOTHING), (RIGHT, LEFT)], [RIGHT, LEFT]),
+        # … beside a low level that is seen
+        ([0.0, 5e-4], [(NOTHING, NOTHING), (RIGHT, LEFT)], [RIGHT, LEFT]),
+        ([0.0, 5e-4], [(NOTHING, NOTHING), (RIGHT, LEFT)], [LEFT, LEFT]),
+        # the sign of b relative to a is kept
+        ([2e-4, 0.1], [(LEFT, -0.9 * RIGHT), (RIGHT, LEFT)], [-RIGHT, LEFT]),
+    ],
+)
+def test_low_levels_are_completed(E, found, true):
+    omega, E, b = 0.03, np.array(E), np.array(true)
+    weight = np.array([np.concatenate(pair) for pair in found])
+    G = np.zeros((8, 8))
+    G[4:, 4:] = np.einsum("ji,jk,j->ik", b, b, omega / (omega**2 - E**2))
+    _complete_low_levels(omega, G, E, weight)
+    assert_array_equal(weight[:, :4], [a for a, _ in found])
+    assert_allclose(weight[:, 4:], b, atol=1e-7)
 
 
 @pytest.mark.parametrize(("mu", "B"), [(0.3, 0.0), (0.2, 0.5), (0.5, 0.3)])

@@ -36,6 +36,12 @@ LOW = 1e-3
 """Below this energy in meV completeness tells b of the lowest level better than Eb does."""
 ZERO_MODE = 3e-5
 """Below this energy in meV Eb is too small to tell b."""
+UNSEEN = 1e-9
+"""A low level whose a is less than this (squared) may be one of rounding errors alone: in the data
+there are few more levels than the wire has."""
+REMAINDER = 0.1
+"""So it is taken to be if all that is left for its b is less than this part of that of a low level
+whose a is seen, of which Eb says b with an error."""
 
 
 @nb.njit(cache=True)
@@ -196,15 +202,11 @@ def _complete_low_levels(
 ) -> None:  # pragma: no cover
     """Take b of low levels from what the others leave of ωG₋₋ = Σ b bᵀ ω²/(ω² − E²).
 
-    Of the lowest level, and of all below ZERO_MODE.
+    Of the lowest level, and of all below ZERO_MODE; those that are seen come first.
     """
-    lowest, x = 0, omega**2
-    for j in range(E.size):
-        if E[j] < E[lowest]:
-            lowest = j
-    below = min(LOW, 0.25 * omega)
-    limit = min(ZERO_MODE, below)
-    if not E[lowest] < below:
+    x, below = omega**2, min(LOW, 0.25 * omega)
+    limit, lowest = min(ZERO_MODE, below), _lowest(E, weight, 0.0)
+    if lowest < 0 or not E[lowest] < below:
         return
     rest = np.empty((4, 4))
     for i in range(4):
@@ -212,24 +214,63 @@ def _complete_low_levels(
             rest[i, k] = omega * G[4 + i, 4 + k]
     for j in range(E.size):
         if j != lowest and E[j] >= limit:
-            factor = x / (x - E[j] ** 2)
-            for i in range(4):
-                for k in range(4):
-                    rest[i, k] -= factor * weight[j, 4 + i] * weight[j, 4 + k]
+            _add_square(rest, -x / (x - E[j] ** 2), weight[j])
+    seen = _lowest(E, weight, UNSEEN)
+    if seen >= 0 and seen != lowest and limit <= E[seen] < below:
+        own, left, factor = 0.0, 0.0, x / (x - E[seen] ** 2)
+        for i in range(4):
+            own += factor * weight[seen, 4 + i] ** 2
+            left += abs(rest[i, i])
+        if left < REMAINDER * own:
+            _add_square(rest, factor, weight[seen])
+            if E[lowest] >= limit:
+                _add_square(rest, -x / (x - E[lowest] ** 2), weight[lowest])
+            lowest = seen
+    for unseen in range(2):
+        for j in range(E.size):
+            if (j == lowest or E[j] < limit) and (_square(weight[j, :4]) < UNSEEN) == (unseen == 1):
+                factor = x / (x - E[j] ** 2)
+                _take_square(rest, factor, weight[j])
+                _add_square(rest, -factor, weight[j])
+
+
+@nb.njit(cache=True, error_model="numpy")
+def _square(a: FloatArray) -> float:  # pragma: no cover
+    total = 0.0
+    for i in range(a.size):
+        total += a[i] ** 2
+    return total
+
+
+@nb.njit(cache=True, error_model="numpy")
+def _lowest(E: FloatArray, weight: FloatArray, least: float) -> int:  # pragma: no cover
+    """Return the lowest level of those whose a is no less than this (squared), or −1."""
+    lowest, energy = -1, np.inf
     for j in range(E.size):
-        if j == lowest or E[j] < limit:
-            p, factor = 0, x / (x - E[j] ** 2)
-            for i in range(1, 4):
-                if rest[i, i] > rest[p, p]:
-                    p = i
-            root = np.sqrt(max(rest[p, p], 0.0) * factor)
-            along = 0.0  # the sign of b relative to a is that of the E b that was found
-            for i in range(4):
-                along += weight[j, 4 + i] * rest[i, p]
-            if along < 0.0:
-                root = -root
-            for i in range(4):
-                weight[j, 4 + i] = rest[i, p] / root if root != 0.0 else 0.0
-            for i in range(4):
-                for k in range(4):
-                    rest[i, k] -= factor * weight[j, 4 + i] * weight[j, 4 + k]
+        if E[j] < energy and _square(weight[j, :4]) >= least:
+            lowest, energy = j, E[j]
+    return lowest
+
+
+@nb.njit(cache=True, error_model="numpy")
+def _add_square(rest: FloatArray, factor: float, w: FloatArray) -> None:  # pragma: no cover
+    """Add factor · b bᵀ, where w is (a, b)."""
+    for i in range(4):
+        for k in range(4):
+            rest[i, k] += factor * w[4 + i] * w[4 + k]
+
+
+@nb.njit(cache=True, error_model="numpy")
+def _take_square(rest: FloatArray, factor: float, w: FloatArray) -> None:  # pragma: no cover
+    """Write the b that makes most of rest = factor · b bᵀ, signed as the b or Eb that w has."""
+    p = 0
+    for i in range(1, 4):
+        if rest[i, i] > rest[p, p]:
+            p = i
+    root, along = np.sqrt(max(rest[p, p], 0.0) * factor), 0.0
+    for i in range(4):
+        along += w[4 + i] * rest[i, p]
+    if along < 0.0:  # the sign of b relative to a is that of the E b that was found
+        root = -root
+    for i in range(4):
+        w[4 + i] = rest[i, p] / root if root != 0.0 else 0.0
