@@ -36,9 +36,10 @@ LOW = 1e-3
 """Below this energy in meV completeness tells b of the lowest level better than Eb does."""
 ZERO_MODE = 3e-5
 """Below this energy in meV Eb is too small to tell b."""
-UNSEEN = 1e-9
-"""A low level whose a is less than this (squared) may be one of rounding errors alone: in the data
-there are few more levels than the wire has."""
+UNSEEN = 1e-10
+"""A low level whose a is less than this (squared) may be one of rounding errors alone: with few
+nodes some levels are found at zero that the wire does not have. (Of those that it has, and whose a
+was still too small to find E, the least that was seen in 440,000 sets is three times as much.)"""
 REMAINDER = 0.1
 """So it is taken to be if all that is left for its b is less than this part of that of a low level
 whose a is seen, of which Eb says b with an error."""
