@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import hashlib
 import warnings
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -73,19 +74,27 @@ def draw(table: pd.DataFrame, path: Path) -> None:
         import arviz as az
     from matplotlib import pyplot as plt
 
-    groups = list(table[table["noise"] > 0].groupby(["model", "noise"]))
+    some = table[table["noise"] > 0]
+    models, noises = list(some["model"].unique()), sorted(some["noise"].unique())
     figure, panels = plt.subplots(
-        1, len(groups), figsize=(7.06, 2.2), sharey=True, layout="constrained", squeeze=False
-    )
-    for panel, ((model, noise), some) in zip(panels[0], groups, strict=True):
-        quantiles = norm.cdf(deviations(some))
-        az.plot_ecdf(
-            quantiles, cdf=uniform.cdf, difference=True, confidence_bands="auto", ci_prob=0.95,
-            ax=panel, eval_points=np.linspace(0, 1, 101),
-        )  # fmt: skip
-        panel.set_title(f"{str(model).split('_')[0]} components\n{noise:g} $e^2/h$", fontsize=8)
-        panel.set_xlabel("quantile of the truth", fontsize=8)
-    panels[0][0].set_ylabel("ECDF − uniform", fontsize=8)
+        len(models), len(noises), figsize=(7.06, 1.75 * len(models)), sharex=True, sharey=True,
+        layout="constrained", squeeze=False,
+    )  # fmt: skip
+    for (row, model), (column, noise) in product(enumerate(models), enumerate(noises)):
+        panel = panels[row, column]
+        wires = some[(some["model"] == model) & (some["noise"] == noise)]
+        panel.set_title(
+            f"{model.split('_')[0]} components, {noise:g} $e^2/h$\n{len(wires)} wires", fontsize=8
+        )
+        if not wires.empty:
+            az.plot_ecdf(
+                norm.cdf(deviations(wires)), cdf=uniform.cdf, difference=True,
+                confidence_bands="auto", ci_prob=0.95, ax=panel,
+                eval_points=np.linspace(0, 1, 101),
+            )  # fmt: skip
+        panel.tick_params(labelsize=8)
+    figure.supxlabel("quantile of the truth in the answer", fontsize=8)
+    figure.supylabel("ECDF − uniform", fontsize=8)
     with replacing(path) as temporary:
         figure.savefig(temporary, dpi=200)
 
