@@ -19,7 +19,12 @@ from disorder_landscape.inference.inversion import (
 )
 from disorder_landscape.inference.measurement import measurement_of, settings_of
 from disorder_landscape.inference.observation import Observation
-from disorder_landscape.inference.report import noise_hint, parse_noise, summary
+from disorder_landscape.inference.report import (
+    noise_hint,
+    parse_noise,
+    stated_noise_hint,
+    summary,
+)
 from disorder_landscape.inference.rounds import RoundSettings
 from disorder_landscape.inference.unknowns import Unknowns
 from disorder_landscape.inference.word import word_on
@@ -252,6 +257,23 @@ def test_a_network_says_what_errors_it_knows():
     assert noise_hint(clean, 0.001) == noise_hint(noisy, 0.1) == ""
     errors = dict.fromkeys(CONDUCTANCES, 0.001) | {"G_RL": 0.01}
     assert "errors of up to 0.001 e²/h: for 0.01 e²/h" in noise_hint(clean, errors)
+
+
+@pytest.mark.parametrize(
+    ("misfit", "says"),
+    [
+        ([0.0101, 0.01, 0.0099, np.nan], "10 times the noise in all channels alike"),
+        ([0.0003, 0.0003, 0.00031, 0.0003], "smaller than was stated, and so the error bars"),
+        ([0.00102, 0.00099, 0.001, 0.001], ""),
+        ([0.01, 0.02, 0.01, 0.02], ""),  # something else is wrong
+        ([np.nan] * 4, ""),
+    ],
+)
+def test_noise_that_is_other_than_stated_is_noticed(misfit, says):
+    hint = stated_noise_hint(np.array(misfit), np.full(4, 0.001))
+    assert says in hint
+    assert bool(says) == bool(hint)
+    assert stated_noise_hint(np.array(misfit), np.zeros(4)) == ""
 
 
 def test_the_summary_says_it_all(inferred):

@@ -10,9 +10,14 @@ from disorder_landscape.config import TrainingConfig
 from disorder_landscape.inference.observation import noise_of_channels
 from disorder_landscape.learning.scaling import NOISE_FLOOR
 from disorder_landscape.physics.labels import CONDUCTANCES
+from disorder_landscape.physics.parameters import FloatArray
 
 UNUSED_TO = 2.0
 """A network guesses badly from errors that are more than so many times those of its training."""
+ALIKE = 1.1
+"""Misfits are the noise's, if they differ by less than this factor between the channels, …"""
+OTHERWISE = 1.25
+"""… which is not what was stated, if they are more or less than it by this factor."""
 
 
 def parse_noise(text: str) -> float | dict[str, float]:
@@ -39,6 +44,29 @@ def noise_hint(training: TrainingConfig, noise: float | dict[str, float]) -> str
     )
 
 
+def stated_noise_hint(misfit: FloatArray, noise: FloatArray) -> str:
+    """Return a line about noise that is other than stated; empty without any sign of that.
+
+    What a model lacks makes some channels worse than others; noise makes all alike.
+
+    Parameters
+    ----------
+    misfit, noise : array, shape (channel,)
+        In e²/h; NaN where nothing was measured.
+    """
+    there = np.isfinite(misfit) & (noise > 0)
+    times = misfit[there] / noise[there]
+    if times.size == 0 or times.max() > ALIKE * times.min():
+        return ""
+    if 1 / OTHERWISE < times.mean() < OTHERWISE:
+        return ""
+    more = times.mean() > 1
+    return (
+        f"The misfit is {times.mean():.2g} times the noise in all channels alike: the noise may be "
+        f"{'larger' if more else 'smaller'} than was stated{'' if more else ', and so the error bars'}."
+    )
+
+
 def summary(result: xr.Dataset) -> list[str]:
     """Return the lines that tell what `infer` has found."""
     deviation = float(np.sqrt((result["potential_deviation"] ** 2).mean()))
@@ -54,4 +82,5 @@ def summary(result: xr.Dataset) -> list[str]:
     misfits = zip(result["channel"].to_numpy(), result["misfit"].to_numpy(), strict=True)
     for (name, misfit), noise in zip(misfits, attrs["noise"], strict=True):
         lines.append(f"misfit of {name}  {misfit:.5f} e²/h; noise: {noise:g} e²/h")
-    return lines
+    hint = stated_noise_hint(result["misfit"].to_numpy(), np.asarray(attrs["noise"]))
+    return [*lines, hint] if hint else lines
