@@ -60,10 +60,10 @@ def stated_noise_hint(misfit: FloatArray, noise: FloatArray) -> str:
         return ""
     if 1 / OTHERWISE < times.mean() < OTHERWISE:
         return ""
-    more = times.mean() > 1
+    other = "larger" if times.mean() > 1 else "smaller, and so the error bars"
     return (
-        f"The misfit is {times.mean():.2g} times the noise in all channels alike: the noise may be "
-        f"{'larger' if more else 'smaller'} than was stated{'' if more else ', and so the error bars'}."
+        f"The misfit is {times.mean():.2g} times the noise in all channels alike: the noise "
+        f"may be other than was stated: {other}."
     )
 
 
