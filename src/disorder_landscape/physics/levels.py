@@ -205,7 +205,7 @@ def _complete_low_levels(
 
     Of the lowest level, and of all below ZERO_MODE; those that are seen come first.
     """
-    x, below = omega**2, min(LOW, 0.25 * omega)
+    below = min(LOW, 0.25 * omega)
     limit, lowest = min(ZERO_MODE, below), _lowest(E, weight, 0.0)
     if lowest < 0 or not E[lowest] < below:
         return
@@ -215,24 +215,28 @@ def _complete_low_levels(
             rest[i, k] = omega * G[4 + i, 4 + k]
     for j in range(E.size):
         if j != lowest and E[j] >= limit:
-            _add_square(rest, -x / (x - E[j] ** 2), weight[j])
+            _add_square(rest, -_share(omega, E[j]), weight[j])
     seen = _lowest(E, weight, UNSEEN)
     if seen >= 0 and seen != lowest and limit <= E[seen] < below:
-        own, left, factor = 0.0, 0.0, x / (x - E[seen] ** 2)
-        for i in range(4):
-            own += factor * weight[seen, 4 + i] ** 2
-            left += abs(rest[i, i])
-        if left < REMAINDER * own:
-            _add_square(rest, factor, weight[seen])
+        share = _share(omega, E[seen])
+        left = np.abs(np.diag(rest)).sum()
+        if left < REMAINDER * share * _square(weight[seen, 4:]):
+            _add_square(rest, share, weight[seen])
             if E[lowest] >= limit:
-                _add_square(rest, -x / (x - E[lowest] ** 2), weight[lowest])
+                _add_square(rest, -_share(omega, E[lowest]), weight[lowest])
             lowest = seen
     for unseen in range(2):
         for j in range(E.size):
             if (j == lowest or E[j] < limit) and (_square(weight[j, :4]) < UNSEEN) == (unseen == 1):
-                factor = x / (x - E[j] ** 2)
-                _take_square(rest, factor, weight[j])
-                _add_square(rest, -factor, weight[j])
+                share = _share(omega, E[j])
+                _take_square(rest, share, weight[j])
+                _add_square(rest, -share, weight[j])
+
+
+@nb.njit(cache=True, error_model="numpy")
+def _share(omega: float, E: float) -> float:  # pragma: no cover
+    """Return the factor of b bᵀ in ωG₋₋."""
+    return omega**2 / (omega**2 - E**2)
 
 
 @nb.njit(cache=True, error_model="numpy")
