@@ -22,7 +22,8 @@ from matplotlib import pyplot as plt
 
 import disorder_landscape as dl
 
-DATA = Path.cwd() / "data_small"
+here = Path.cwd()
+DATA = next(p / "data_small" for p in (here, *here.parents) if (p / "data_small").exists())
 MODEL = DATA / "models" / "five_components_and_alpha_noisy"
 measured = xr.load_dataset(DATA / "measurement.nc", engine="h5netcdf")
 print(measured)
@@ -43,7 +44,7 @@ print("α =", float(guess["alpha"]), "meV nm")
 # finish them. A second attempt starts from the disorder model's prior, and must agree.
 
 # %%
-inferred = dl.infer(measured, MODEL, noise=0.01)
+inferred = dl.infer(measured, MODEL)  # with the noise that the file states
 print(inferred.attrs["verdict"], "after", inferred.attrs["rounds"], "rounds")
 for channel, misfit in zip(inferred["channel"].values, inferred["misfit"].values, strict=True):
     print(f"misfit of {channel}: {misfit:.4f} e²/h")
@@ -69,8 +70,6 @@ top.legend(frameon=False)
 bottom.plot(1e3 * (inferred["potential"] - true).T, "C0", lw=0.3, alpha=0.5)
 bottom.axhline(0, color="k", lw=0.5)
 bottom.set(xlabel="site", ylabel="members − true [µeV]")
-plt.close(figure)
-
 # %% [markdown]
 # ## Where is it topological?
 #
@@ -80,6 +79,5 @@ plt.close(figure)
 P = inferred["P_topological"]
 figure, panel = plt.subplots(figsize=(4, 3), layout="constrained")
 P.plot.pcolormesh(x="map_B", y="map_mu", ax=panel, vmin=0, vmax=1, cmap="Purples")
-plt.close(figure)
 certain = float(((P == 0) | (P == 1)).mean())
 print(f"all members agree at {100 * certain:.0f} % of the points")

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import jupytext
 import pytest
+from matplotlib import pyplot as plt
 
 from disorder_landscape.chain import REPOSITORY
 
@@ -20,6 +21,8 @@ def test_notebook(path: Path, monkeypatch, capsys):
     monkeypatch.chdir(REPOSITORY)
     monkeypatch.setenv("MPLBACKEND", "Agg")
     RunCells().preprocess(jupytext.read(path), {})
+    assert len(plt.get_fignums()) == 2  # left open, so that a notebook shows them
+    plt.close("all")
     said = capsys.readouterr().out
     assert "converged after" in said
     assert "all members agree at" in said

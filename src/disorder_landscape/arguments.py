@@ -33,12 +33,26 @@ def number_in(name: str, value: object, low: float, high: float, unit: str = "")
         If the value is not a finite number of that range.
     """
     must = f"be a number from {low:g} to {high:g} {unit}".rstrip()
+    require(not isinstance(value, bool | np.bool_), name, must, f"it is {value}")
     try:
         number = float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError, OverflowError):
         raise ArgumentError(name, must, f"it is {value!r}") from None
     require(low <= number <= high, name, must, f"it is {number:g}")
     return number
+
+
+def whole_number_in(name: str, value: object, low: int, high: int) -> int:
+    """Return the value as an int within [low, high].
+
+    Raises
+    ------
+    ArgumentError
+        If the value is not a whole number of that range.
+    """
+    number = number_in(name, value, low, high)
+    require(number.is_integer(), name, "be a whole number", f"it is {number:g}")
+    return int(number)
 
 
 def numbers_of(name: str, text: str, counts: tuple[int, ...], must: str) -> list[float]:

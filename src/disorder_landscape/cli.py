@@ -251,6 +251,7 @@ def infer(
     from disorder_landscape.files import check_netcdf, check_writable
     from disorder_landscape.inference.infer import infer as find
     from disorder_landscape.inference.measurement import measurement_of
+    from disorder_landscape.inference.observation import stated_noise
     from disorder_landscape.inference.plot import plot_inference
     from disorder_landscape.inference.progress import inference_progress
     from disorder_landscape.inference.report import noise_hint, parse_noise, summary
@@ -264,7 +265,7 @@ def infer(
         check_plot(plot)
         check_writable("plot", plot)
     measured = read_dataset(measurement)
-    errors = parse_noise(noise if noise is not None else str(measured.attrs.get("noise", 0.001)))
+    errors = stated_noise(measured.attrs) if noise is None else parse_noise(noise)
     hint = "" if from_prior else noise_hint(load_model_config(model).training, errors)
     if hint:
         print(hint, file=sys.stderr)
@@ -284,7 +285,9 @@ def infer(
 
 @app.command()
 def verify(
-    prediction: Annotated[Path, typer.Argument(help="netCDF file of `landscape predict`.")],
+    prediction: Annotated[
+        Path, typer.Argument(help="netCDF file of `landscape predict` or `landscape infer`.")
+    ],
     measurements: Annotated[
         list[Path],
         typer.Argument(help="netCDF files with G_LL ... G_RL at settings the network never saw."),

@@ -18,7 +18,7 @@ from disorder_landscape.inference.inversion import (
     InversionSettings,
 )
 from disorder_landscape.inference.measurement import measurement_of, settings_of
-from disorder_landscape.inference.observation import Observation
+from disorder_landscape.inference.observation import Observation, noise_of_channels, stated_noise
 from disorder_landscape.inference.report import (
     noise_hint,
     parse_noise,
@@ -105,7 +105,9 @@ def test_channels_and_numbers_may_be_missing(measured):
     assert result.attrs["verdict"] == CONVERGED
     assert "some are missing" in result.attrs["start"]
     assert site_error(result) < 0.01
-    assert (result["misfit"][2:] == 0).all()
+    np.testing.assert_array_equal(np.isnan(result["misfit"]), [False, False, True, True])
+    said = summary(result)
+    assert f"misfit of {CONDUCTANCES[3]}  not measured" in said
 
 
 def test_settings_are_the_measurements_own(measured):
@@ -186,7 +188,17 @@ def test_the_seed_decides(measured, inferred):
         (lambda G: G.isel(mu=0), {}, "its dims are B, bias"),
         (lambda G: G.drop_vars(CONDUCTANCES), {}, "it lacks G_LL, G_RR, G_LR, G_RL"),
         (lambda G: G.isel(mu=slice(5)), {"network": True}, "it differs in mu"),
-        (lambda G: G.isel(B=slice(None, None, -1)), {}, "B must be .* not sorted"),
+        (lambda G: G.isel(B=[0, 1, 1, 2, 3, 4]), {}, "B must be .* not sorted"),
+        (lambda G: G.isel(mu=slice(5)), {"network": True}, "--from-prior"),
+        (lambda G: G.assign_attrs(g=14.7), {}, "g must be 25, .* the measurement's is 14.7"),
+        (lambda G: G.assign_attrs(delta0=0.2), {}, "delta0 must be 0.12"),
+        (lambda G: G.assign_attrs(barrier=[15.0, np.nan]), {}, "barrier must be a number"),
+        (lambda G: G.assign_attrs(barrier=[15.0, 1e9]), {}, "barrier must be a number"),
+        (lambda G: G.assign(G_LL=G["G_LL"].assign_attrs(units="2e^2/h")), {}, "G_LL are 2e.2/h"),
+        (lambda G: G + 0j, {}, "hold finite numbers, but it holds something else"),
+        (lambda G: G.assign_attrs(noise=[0.1, 0.2]), {"noise": None}, "measurement states 2"),
+        (lambda G: G, {"noise": True}, "noise must be a number .* it is True"),
+        (lambda G: G, {"members": 2.5}, "members must be a whole number"),
     ],
 )
 def test_bad_input_is_refused_in_one_sentence(measured, change, options, message):
@@ -252,9 +264,25 @@ def test_noise_from_the_command_line():
             parse_noise(text)
 
 
+def test_noise_is_what_the_measurement_states():
+    """As one number, or as `infer` writes it."""
+    assert stated_noise({}) == 0.001
+    assert stated_noise({"noise": 0.01}) == stated_noise({"noise": np.array([0.01])}) == 0.01
+    each = stated_noise({"noise": np.array([0.1, 0.2, 0.3, 0.4])})
+    np.testing.assert_array_equal(noise_of_channels(each), [0.1, 0.2, 0.3, 0.4])
+
+
+def test_sweeps_may_go_either_way(measured):
+    """And axes in any order."""
+    backward = measured.isel(B=slice(None, None, -1), mu=[3, 1, 0, 2, 5, 4])
+    there, back = (measurement_of(G, complete=True) for G in (measured, backward))
+    for name in ("G", "mu", "B", "bias"):
+        np.testing.assert_array_equal(getattr(there, name), getattr(back, name))
+
+
 def test_a_network_says_what_errors_it_knows():
     clean, noisy = TrainingConfig(noise=0.001), TrainingConfig(noise=0.005, noise_up_to=0.1)
-    assert noise_hint(clean, 0.001) == noise_hint(noisy, 0.1) == ""
+    assert noise_hint(clean, 0.001) == noise_hint(noisy, 0.1) == noise_hint(noisy, 0.5) == ""
     errors = dict.fromkeys(CONDUCTANCES, 0.001) | {"G_RL": 0.01}
     assert "errors of up to 0.001 e²/h: for 0.01 e²/h" in noise_hint(clean, errors)
 
@@ -277,7 +305,12 @@ def test_noise_that_is_other_than_stated_is_noticed(misfit, says):
 
 
 def test_the_summary_says_it_all(inferred):
+    failed = inferred.assign_attrs(verdict=NOT_DESCRIBED)
+    assert "neither the deviation below" in summary(failed)[1]
+    known = summary(inferred.assign(alpha=8.0 + 0 * inferred["alpha"]))
+    assert "alpha           8 meV nm, as in the model" in known
     lines = "\n".join(summary(inferred))
+    assert "neither" not in lines
     assert "verdict         converged" in lines
     assert "from            the prior\nattempts        1, rounds: " in lines
     assert lines.count("noise: 0.001 e²/h") == 4

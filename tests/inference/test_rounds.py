@@ -396,6 +396,7 @@ def test_answers_that_are_equally_bad_say_that_the_model_is(linear, misfits, exp
     noisy = replace(linear, variance=np.full(40, 1.0))
     attempts = [
         Attempt(
+            last=UNKNOWNS.prior,
             answer=Gaussian(far * np.ones(SIZE), 1e-6 * np.eye(SIZE)),
             data=noisy.data + misfit,
             objective=40 * misfit**2,
@@ -411,7 +412,7 @@ def test_answers_that_are_equally_bad_say_that_the_model_is(linear, misfits, exp
 def test_one_answer_that_fits_is_enough_where_the_noise_hides_little(linear, noise, expected):
     measured = replace(linear, variance=np.full(40, noise**2))
     answer = Gaussian(np.zeros(SIZE), np.eye(SIZE))
-    alone = Attempt(answer, data=measured.data, objective=0.0, excess=0.0, rounds=5)
+    alone = Attempt(answer, answer, measured.data, objective=0.0, excess=0.0, rounds=5)
     assert verdict(measured, [alone]) == expected
     assert verdict(measured, [alone, replace(alone, objective=1.0)]) == CONVERGED
 
@@ -419,7 +420,8 @@ def test_one_answer_that_fits_is_enough_where_the_noise_hides_little(linear, noi
 def test_answers_are_the_same_that_error_bars_allow():
     """However small the distance is, along the axis that is known best it may be far."""
     covariance = np.diag([1.0, 1e-6, *np.ones(SIZE - 2)])
-    one = Attempt(Gaussian(np.zeros(SIZE), covariance), np.zeros(40), 0.0, 0.0, 5)
+    about = Gaussian(np.zeros(SIZE), covariance)
+    one = Attempt(about, about, np.zeros(40), 0.0, 0.0, 5)
     observation = Linear(np.zeros(40), np.empty(0))
     for axis, far, same in [(0, 2.0, True), (1, 1e-3, True), (1, 0.1, False), (0, 6.0, False)]:
         other = replace(one, answer=Gaussian(far * np.eye(SIZE)[axis], covariance))

@@ -67,7 +67,7 @@ def read_dataset(path: str | Path, variables: Iterable[str] = ()) -> xr.Dataset:
     ArgumentError
         If it is missing, truncated, not netCDF, or lacks one of the variables.
     """
-    must = "be a netCDF file of this program"
+    must = "be a netCDF-4 file"
     try:
         with xr.open_dataset(path, engine="h5netcdf") as file:
             dataset = file.load()

@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from disorder_landscape.arguments import number_in, require
+from disorder_landscape.arguments import ArgumentError, require, whole_number_in
+from disorder_landscape.config import DatasetConfig
 from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.inversion import (
     Attempt,
@@ -19,8 +20,8 @@ from disorder_landscape.inference.inversion import (
     verdict,
     word_heard,
 )
-from disorder_landscape.inference.measurement import measurement_of, settings_of
-from disorder_landscape.inference.observation import Observation, noise_of_channels
+from disorder_landscape.inference.measurement import Measurement, measurement_of, settings_of
+from disorder_landscape.inference.observation import Observation, noise_of_channels, stated_noise
 from disorder_landscape.inference.unknowns import Unknowns
 from disorder_landscape.learning.model import (
     TrainedModel,
@@ -28,7 +29,6 @@ from disorder_landscape.learning.model import (
     load_model_config,
     points_of_grid,
 )
-from disorder_landscape.learning.scaling import NOISE_FLOOR
 from disorder_landscape.physics.labels import AXES, CONDUCTANCES, labelled
 from disorder_landscape.physics.parameters import FloatArray
 from disorder_landscape.physics.topology import topological_visibility
@@ -41,7 +41,7 @@ MAP_POINTS = 61, 81
 def infer(
     G: xr.Dataset,
     model: str | Path | TrainedModel,
-    noise: float | Mapping[str, float] = NOISE_FLOOR,
+    noise: float | Mapping[str, float] | None = None,
     network: bool = True,
     members: int = MEMBERS,
     seed: int = 0,
@@ -65,7 +65,8 @@ def infer(
     model : path or TrainedModel
         Folder of a trained model, which also says what disorder to expect.
     noise : float or mapping
-        Standard deviation of the measurement's errors in e²/h, or of each channel's.
+        Standard deviation of the measurement's errors in e²/h, or of each channel's. By default the
+        attribute noise of the measurement, or 0.001.
     network : bool
         False starts from the disorder model's prior: for other grids than the network's.
     members : int
@@ -82,10 +83,10 @@ def infer(
     Dataset
         Of the members: potential (member, site) and components (member, component) in meV, alpha
         (member) in meV nm. potential_mean and potential_deviation (site). misfit (channel) in
-        e²/h. Conductances of the mean, G_LL … G_RL (mu, B, bias). On a finer grid: T_IV (lead,
-        map_mu, map_B) of the mean and P_topological (map_mu, map_B), the share of the members with
-        det r < 0 at the left end. Attributes: verdict ("converged", "not converged" or "not
-        described by the model"), excess, attempts, rounds, start, noise.
+        e²/h, NaN where nothing was measured. Conductances of the mean, G_LL … G_RL (mu, B, bias).
+        On a finer grid: T_IV (lead, map_mu, map_B) of the mean and P_topological (map_mu, map_B),
+        the share of the members with det r < 0 at the left end. Attributes: verdict ("converged",
+        "not converged" or "not described by the model"), excess, attempts, rounds, start, noise.
 
     Raises
     ------
@@ -98,14 +99,14 @@ def infer(
     )
     config = whole_config.dataset
     measurement = measurement_of(G, settings_of(config), complete=False)
-    errors = noise_of_channels(noise)
-    members = int(number_in("members", members, 2, 10_000))
+    errors = noise_of_channels(stated_noise(G.attrs) if noise is None else noise)
+    members = whole_number_in("members", members, 2, 10_000)
     require(members % 2 == 0, "members", "be an even number", f"it is {members}")
-    seed = int(number_in("seed", seed, 0, 2**31))
+    seed = whole_number_in("seed", seed, 0, 2**31)
     whole = bool(np.isfinite(measurement.G).all())
     trained = None
     if network and whole:
-        points_of_grid(config, vars(measurement), "measurement")
+        _check_grid(config, measurement)
         trained = model if isinstance(model, TrainedModel) else load_model(model)
     observation = Observation(measurement, Unknowns(config), errors)
     start = "the prior" if trained is None else "the network's guess"
@@ -133,10 +134,20 @@ def infer(
     return result
 
 
+def _check_grid(config: DatasetConfig, measurement: Measurement) -> None:
+    """Require that the network knows the grid of a measurement, or tell how to do without it."""
+    try:
+        points_of_grid(config, vars(measurement), "measurement")
+    except ArgumentError as error:
+        name, must, but = error.parts
+        without = "(network=False, or --from-prior, does without the network)"
+        raise ArgumentError(name, must, f"{but} {without}") from None
+
+
 def _result(observation: Observation, chosen: Attempt, members: int, seed: int) -> xr.Dataset:
     m, unknowns = observation.measurement, observation.unknowns
     mean = chosen.answer.mean
-    X = chosen.answer.draw(np.random.default_rng([seed, 2**31 + 1]), members)
+    X = chosen.draw(np.random.default_rng([seed, 2**31 + 1]), members)
     V = unknowns.potential(X)
     maps = _maps(m.mu, m.B)
     wires = unknowns.wires(np.concatenate([mean[None], X]), m.barrier)
@@ -148,12 +159,12 @@ def _result(observation: Observation, chosen: Attempt, members: int, seed: int) 
         "components": (("member", "component"), unknowns.components(X)),
         "alpha": ("member", unknowns.alpha(X)),
         "potential": (("member", "site"), V),
-        "potential_mean": ("site", unknowns.potential(mean), {"units": "meV"}),
-        "potential_deviation": ("site", _deviation(unknowns, chosen), {"units": "meV"}),
-        "misfit": ("channel", np.nan_to_num(observation.misfit(chosen.data)), {"units": "e^2/h"}),
+        "potential_mean": ("site", unknowns.potential(mean)),
+        "potential_deviation": ("site", _deviation(unknowns, chosen)),
+        "misfit": ("channel", observation.misfit(chosen.data)),
         **{name: (AXES, G[..., c]) for c, name in enumerate(CONDUCTANCES)},
         "T_IV": (("lead", *grid), T_IV.isel(realization=0).to_numpy()),
-        "P_topological": (grid, topological.to_numpy(), {"units": "1"}),
+        "P_topological": (grid, topological.to_numpy()),
     }
     coords = {
         "component": np.arange(1, unknowns.config.components + 1),

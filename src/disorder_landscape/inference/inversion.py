@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import NamedTuple
@@ -13,11 +13,12 @@ from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.first_guess import network_guess
 from disorder_landscape.inference.observation import Observation, objective, squared_misfits
 from disorder_landscape.inference.polish import polish
+from disorder_landscape.inference.population import Population, population
 from disorder_landscape.inference.rounds import WITH_WORD, Recall, RoundSettings, rounds
 from disorder_landscape.inference.unknowns import Gaussian
 from disorder_landscape.inference.word import Word, word_on
 from disorder_landscape.learning.model import TrainedModel
-from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.physics.parameters import BOLTZMANN, FloatArray
 
 CONVERGED = "converged"
 NOT_CONVERGED = "not converged"
@@ -33,6 +34,11 @@ components with errors of 0.01 e²/h, three had a wrong answer that fitted."""
 SAME_ANSWER = 2.0
 """Two optima are the same if they are closer than this many of their own deviations, root mean
 square over the principal axes (in valleys that bend they differ by one or so)."""
+STRAIGHT = 1.0
+"""An answer whose error bar is more than this many kT, or …"""
+LEAST_WIDTH = 1e-3
+"""… this in meV, about the width of levels, is a population's: conductances are peaks of that
+width, and the posterior is no normal distribution about one optimum."""
 SAME_MISFIT = 0.05
 """Two misfits are the same that differ by less than this part. If the best that can be found is
 twice found to be so bad, in different places even, then it is the model that does no better."""
@@ -53,6 +59,8 @@ class InversionSettings:
 class Attempt:
     """Where rounds and their polish have ended."""
 
+    last: Gaussian
+    """Where members of one more round would have been drawn."""
     answer: Gaussian
     data: FloatArray
     """What its mean shows, shape (datum,)."""
@@ -62,11 +70,17 @@ class Attempt:
     """How many of its deviations χ² is above its mean: of all data, or of a channel, if more."""
     rounds: int
     """How many there were."""
+    population: Population | None = None
+    """Members of the posterior, where it is not the normal distribution of the answer."""
 
     @property
     def fits(self) -> bool:
         """Whether the noise explains what is left of the misfit."""
         return self.excess <= TOLERATED
+
+    def draw(self, rng: np.random.Generator, members: int) -> FloatArray:
+        """Return an even number of members of the posterior, shape (member, unknown)."""
+        return (self.answer if self.population is None else self.population).draw(rng, members)
 
 
 class Step(NamedTuple):
@@ -74,7 +88,7 @@ class Step(NamedTuple):
 
     attempt: int
     stage: str
-    """One of "round" and "polish"."""
+    """One of "round", "polish" and "population"."""
     number: int
     misfit: float
     """Root mean square in e²/h."""
@@ -124,13 +138,17 @@ def invert(
         for one in rounds(observation, found, [seed, number], more, recall, word):
             told(Step(number, "round", count, one.misfit, one.spread))
             found, count = one.distribution, count + 1
-        tell = partial(_tell_of_polish, told, number)
+        tell = partial(_tell, told, number, "polish")
         make = partial(polish, observation, found, told=tell)
         answer = _recalled(recall, f"polish.{number}", make)
-        attempts.append(_attempt(observation, answer, count))
-        if verdict(observation, attempts) != NOT_CONVERGED:
+        attempts.append(_attempt(observation, found, answer, count))
+        outcome = attempts
+        if is_surely_right(observation) or number > 0:
+            tell = partial(_tell, told, number, "population")
+            outcome = judged(observation, attempts, [seed, number, 2], recall, tell)
+        if verdict(observation, outcome) != NOT_CONVERGED:
             break
-    return attempts
+    return outcome
 
 
 def word_heard(model: TrainedModel | None, observation: Observation) -> Word | None:
@@ -142,15 +160,39 @@ def _recalled(recall: Recall, name: str, make: Callable[[], Gaussian]) -> Gaussi
     return Gaussian.from_dict(recall(name, lambda: make().to_dict()))
 
 
-def _tell_of_polish(told: Told, attempt: int, number: int, misfit: float, spread: float) -> None:
-    told(Step(attempt, "polish", number, misfit, spread))
+def _tell(told: Told, attempt: int, stage: str, number: int, misfit: float, spread: float) -> None:
+    told(Step(attempt, stage, number, misfit, spread))
 
 
-def _attempt(observation: Observation, answer: Gaussian, count: int) -> Attempt:
+def _attempt(observation: Observation, last: Gaussian, answer: Gaussian, count: int) -> Attempt:
     data = observation.simulate(answer.mean[None])[0]
     squares = squared_misfits(observation, data)
     height = float(objective(observation, answer.mean, data))
-    return Attempt(answer, data, height, chi_square_excess(observation, squares), count)
+    return Attempt(last, answer, data, height, chi_square_excess(observation, squares), count)
+
+
+def judged(
+    observation: Observation,
+    attempts: list[Attempt],
+    seed: Sequence[int],
+    recall: Recall = lambda name, calculate: calculate(),
+    told: Callable[[int, float, float], None] = lambda number, misfit, spread: None,
+) -> list[Attempt]:
+    """Return attempts whose best has the posterior's moments, where Laplace's are not those.
+
+    The members that have them are drawn where all attempts that fit have ended (`population`).
+    """
+    chosen = best(attempts)
+    width = max(STRAIGHT * BOLTZMANN * observation.measurement.temperature, LEAST_WIDTH)
+    bar = observation.unknowns.site_deviation(chosen.answer.covariance)
+    if not chosen.fits or bar < width:
+        return attempts
+    proposals = [attempt.last for attempt in attempts if attempt.fits]
+    drawn = population(observation, proposals, seed, recall, told)
+    answer = drawn.moments
+    data = observation.simulate(answer.mean[None])[0]
+    instead = replace(chosen, answer=answer, data=data, population=drawn)
+    return [instead if attempt is chosen else attempt for attempt in attempts]
 
 
 def _with_more_members(settings: InversionSettings, number: int) -> RoundSettings:

@@ -14,14 +14,17 @@ from disorder_landscape.arguments import ArgumentError, grid_in, number_in, requ
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.physics.hamiltonian import FULL_TURN
 from disorder_landscape.physics.labels import AXES, CONDUCTANCES
-from disorder_landscape.physics.parameters import FloatArray, Nanowire
+from disorder_landscape.physics.parameters import PARAMETER_RANGES, FloatArray, Nanowire
 from disorder_landscape.physics.transport import conductance
 
 QUANTUM = e**2 / h
 """e²/h in S."""
-SIEMENS = ("S", "siemens", "A/V")
+QUANTA = ("", "e^2/h", "e²/h", "e**2/h", "e2/h")
+"""What conductances may be in, where they say so."""
 LARGEST = 10.0
 """In e²/h: no conductance of a wire with one subband is above 4."""
+FIXED = ("mass", "lattice", "g", "gamma", "delta0", "dissipation")
+"""Parameters of `Nanowire` that all wires of this program's models have in common."""
 AXIS_UNITS = {"mu": ("meV",), "B": ("T", "tesla"), "bias": ("meV", "mV")}
 """What axes may be in, where they say so."""
 IN_QUANTA = f"be in e²/h, which is {QUANTUM:.4g} S, by which conductances in S are divided"
@@ -81,7 +84,8 @@ def measurement_of(
         G_LL … G_RL in e²/h, dims (mu, B, bias) in any order, and the attributes SETTINGS, as
         `conductance` returns them.
     usual : mapping, optional
-        Settings where the attributes are missing.
+        Settings where the attributes are missing, and what is stated of the wire must be, if it is
+        otherwise than `Nanowire`'s own.
     complete : bool
         Whether each conductance must be there and finite; otherwise one number is enough, and what
         is missing is NaN.
@@ -89,8 +93,8 @@ def measurement_of(
     Raises
     ------
     ArgumentError
-        If it lacks a variable, a dim or an attribute, has several wires, holds NaN or infinity, or
-        is in siemens.
+        If it lacks a variable, a dim or an attribute, has several wires, holds NaN or infinity, is
+        in siemens, or states that the wire is another than the models'.
     """
     there = isinstance(dataset, xr.Dataset)
     require(there, "measurement", "be a Dataset", f"it is {type(dataset).__name__!r}")
@@ -106,6 +110,8 @@ def measurement_of(
     missing = [name for name in SETTINGS if name not in settings]
     states = f"state {', '.join(SETTINGS)} as attributes"
     require(not missing, "measurement", states, f"it lacks {', '.join(missing)}")
+    _check_wire(dataset.attrs)
+    dataset = dataset.sortby([axis for axis in AXES if dataset[axis].dims == (axis,)])
     return Measurement(
         G=_checked_conductances(dataset, given, complete),
         mu=_axis(dataset, "mu", 1e3),
@@ -117,20 +123,27 @@ def measurement_of(
     )
 
 
+def _check_wire(attrs: Mapping[Any, object]) -> None:
+    """Require that what a measurement states of its wire is what all models take for granted."""
+    for name in FIXED:
+        usual = getattr(Nanowire, name)
+        stated = number_in(name, attrs.get(name, usual), *PARAMETER_RANGES[name])
+        must = f"be {usual:g}, as in all simulations here"
+        require(bool(np.isclose(stated, usual)), name, must, f"the measurement's is {stated:g}")
+
+
 def _checked_conductances(dataset: xr.Dataset, given: list[str], complete: bool) -> FloatArray:
     """Return the conductances (mu, B, bias, channel) in e²/h, NaN for what is not given."""
     shape = tuple(dataset.sizes[axis] for axis in AXES)
     G = np.full((*shape, len(CONDUCTANCES)), np.nan)
     for name in given:
         values = dataset[name].transpose(*AXES).to_numpy()
-        numbers = np.issubdtype(values.dtype, np.number)
+        numbers = values.dtype.kind in "fiu"
         finite = numbers and bool((np.isfinite(values) | (np.isnan(values) & (not complete))).all())
         require(finite, "measurement", "hold finite numbers", "it holds something else")
         G[..., CONDUCTANCES.index(name)] = values
         unit = str(dataset[name].attrs.get("units", ""))
-        require(
-            not unit.endswith(SIEMENS), "measurement", IN_QUANTA, f"the units of {name} are {unit}"
-        )
+        require(unit in QUANTA, "measurement", IN_QUANTA, f"the units of {name} are {unit}")
     measured = abs(G[np.isfinite(G)])
     require(measured.size > 0, "measurement", "hold finite numbers", "it holds none")
     largest = measured.max()
@@ -154,4 +167,4 @@ def _two_barriers(stated: object) -> tuple[float, float]:
     except (TypeError, ValueError):
         must = "state two barriers in meV, left and right"
         raise ArgumentError("measurement", must, f"it states {stated!r}") from None
-    return left, right
+    return Nanowire(np.zeros(2), barrier=(left, right)).barrier

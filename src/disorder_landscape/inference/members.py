@@ -9,6 +9,7 @@ counts more than one of the last proposal's own only where these are few.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -81,9 +82,8 @@ class Members:
         """Return the members that count for the last proposal."""
         count = np.array([len(drawn.X) for drawn in self._drawn])
         X = np.concatenate([drawn.X for drawn in self._drawn])
-        log = np.array([log_density(drawn.proposal, X) for drawn in self._drawn])
-        mixture = np.logaddexp.reduce(log + np.log(count / count.sum())[:, None], axis=0)
-        weight = np.exp(log[-1] - mixture)
+        mixture = log_mixture([(drawn.proposal, len(drawn.X)) for drawn in self._drawn], X)
+        weight = np.exp(log_density(self._drawn[-1].proposal, X) - mixture)
         counts = weight > LEAST_WEIGHT
         some = np.split(counts, np.cumsum(count)[:-1])
         shown = [
@@ -102,6 +102,20 @@ class Members:
             labels = nothing if self.word is None else self.word.on_members(Y, drawn.rng)
             drawn.shown = _Shown(Y, labels)
         return drawn.shown
+
+
+def log_mixture(drawn: Sequence[tuple[Gaussian, int]], X: FloatArray) -> FloatArray:
+    """Return the logarithm of the density of members drawn from several normal distributions.
+
+    Parameters
+    ----------
+    drawn : sequence of (Gaussian, int)
+        The distributions, and how many members were drawn from each.
+    X : array, shape (member, unknown)
+    """
+    count = np.array([number for _, number in drawn])
+    log = np.array([log_density(gaussian, X) for gaussian, _ in drawn])
+    return np.asarray(np.logaddexp.reduce(log + np.log(count / count.sum())[:, None], axis=0))
 
 
 def log_density(gaussian: Gaussian, X: FloatArray) -> FloatArray:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from disorder_landscape.arguments import number_in, require
 from disorder_landscape.inference.measurement import Measurement, simulated
 from disorder_landscape.inference.unknowns import Unknowns
+from disorder_landscape.learning.scaling import NOISE_FLOOR
 from disorder_landscape.physics.finite_temperature import TOLERANCE
 from disorder_landscape.physics.labels import CONDUCTANCES
 from disorder_landscape.physics.parameters import FloatArray
@@ -118,6 +120,16 @@ def objective(observation: Observation, X: FloatArray, Y: FloatArray) -> FloatAr
     """
     likelihood = squared_misfits(observation, Y).sum(axis=-1)
     return np.asarray(likelihood + observation.unknowns.prior.squared_distance(X))
+
+
+def stated_noise(attrs: Mapping[Any, Any]) -> float | dict[str, float]:
+    """Return the noise that a measurement states: one number, one of each channel, or the usual."""
+    noise = np.atleast_1d(attrs.get("noise", NOISE_FLOOR))
+    if noise.size == len(CONDUCTANCES):
+        return dict(zip(CONDUCTANCES, noise.tolist(), strict=True))
+    must = f"be one number in e²/h, or one for each of {', '.join(CONDUCTANCES)}"
+    require(noise.size == 1, "noise", must, f"the measurement states {noise.size}")
+    return number_in("noise", noise[0], 0.0, 1.0, "e²/h")
 
 
 def noise_of_channels(noise: float | Mapping[str, float]) -> FloatArray:

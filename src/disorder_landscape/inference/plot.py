@@ -9,18 +9,20 @@ import numpy as np
 import xarray as xr
 
 from disorder_landscape.files import replacing
+from disorder_landscape.inference.inversion import CONVERGED
 from disorder_landscape.inference.measurement import Measurement
+from disorder_landscape.inference.report import alpha_with_deviation
 from disorder_landscape.physics.labels import CONDUCTANCES
 from disorder_landscape.physics.parameters import FloatArray
 
-FIGURE_SIZE = 7.06, 5.6
+FIGURE_SIZE = 7.06, 7.2
 """In inches; the width is that of a page of the paper's journal."""
 INTERVALS = (5, 95), (25, 75)
 """Percentiles of the members between which V is shaded."""
 
 
 def plot_inference(result: xr.Dataset, measurement: Measurement, path: Path) -> None:
-    """Draw V and its intervals, the components, G measured and explained, and P(topological).
+    """Draw V and how sure it is, components, misfits, G measured and explained, P(topological).
 
     Parameters
     ----------
@@ -44,30 +46,50 @@ def plot_inference(result: xr.Dataset, measurement: Measurement, path: Path) -> 
     with plt.rc_context({"font.size": 8, "axes.titlesize": 8}):
         figure = plt.figure(figsize=FIGURE_SIZE, layout="constrained")
         panels = figure.subplot_mosaic(
-            [["V"] * 4, ["c", "c", "misfit", "misfit"], ["measured", "explained", "T", "P"]]
+            [
+                ["V"] * 4,
+                ["deviation"] * 4,
+                ["c", "c", "misfit", "misfit"],
+                ["measured", "explained", "T", "P"],
+            ],
+            height_ratios=(1.0, 0.6, 0.9, 1.3),
         )
         _potential(panels["V"], result)
+        _deviation(panels["deviation"], result)
         _components(panels["c"], result)
         _misfit(panels["misfit"], result)
         _conductances(figure, panels["measured"], panels["explained"], result, measurement)
         _maps(figure, panels["T"], panels["P"], result)
-        figure.suptitle(f"{result.attrs['verdict']}; from {result.attrs['start']}", fontsize=8)
+        color = "k" if result.attrs["verdict"] == CONVERGED else "C3"
+        title = f"{result.attrs['verdict']}; from {result.attrs['start']}"
+        figure.suptitle(title, fontsize=8, color=color)
         with replacing(path) as temporary:
             figure.savefig(temporary, dpi=200)
         plt.close(figure)
 
 
 def _potential(panel: Any, result: xr.Dataset) -> None:
-    V, site = result["potential"].to_numpy(), result["site"].to_numpy()
+    V, site = result["potential_mean"].to_numpy(), result["site"].to_numpy()
+    panel.plot(site, V, "k", lw=0.8)
+    panel.set(ylabel=r"$V_\mathrm{dis}$ [meV]", xlim=(site[0], site[-1]))
+    panel.tick_params(labelbottom=False)
+    panel.set_title("mean of the members")
+
+
+def _deviation(panel: Any, result: xr.Dataset) -> None:
+    """Show the members' intervals about their mean, which V's own scale would hide."""
+    off = 1e3 * (result["potential"] - result["potential_mean"]).to_numpy()
+    site = result["site"].to_numpy()
     for (low, high), alpha in zip(INTERVALS, (0.25, 0.5), strict=True):
-        between = np.percentile(V, [low, high], axis=0)
+        between = np.percentile(off, [low, high], axis=0)
         label = f"{high - low} % of the members"
         panel.fill_between(site, *between, color="C0", alpha=alpha, lw=0, label=label)
-    panel.plot(site, result["potential_mean"], "k", lw=0.8, label="mean")
-    largest = 1e3 * float(np.sqrt((result["potential_deviation"] ** 2).mean()))
-    panel.set(xlabel="site", ylabel=r"$V_\mathrm{dis}$ [meV]", xlim=(site[0], site[-1]))
-    panel.set_title(f"deviation of $V$, root mean square: {largest:.2g} µeV")
-    panel.legend(ncols=3, frameon=False)
+    panel.set(xlabel="site", ylabel="off [µeV]", xlim=(site[0], site[-1]))
+    deviation = 1e3 * float(np.sqrt((result["potential_deviation"] ** 2).mean()))
+    panel.set_title(f"members minus mean; error bar of V: {deviation:.2g} µeV, root mean square")
+    low, high = panel.get_ylim()
+    panel.set_ylim(low, high + 0.5 * (high - low))  # room for the legend
+    panel.legend(ncols=2, frameon=False, loc="upper center")
 
 
 def _components(panel: Any, result: xr.Dataset) -> None:
@@ -77,9 +99,7 @@ def _components(panel: Any, result: xr.Dataset) -> None:
     )
     panel.axhline(0.0, color="0.7", lw=0.5)
     panel.set(xlabel="component $n$", ylabel="$c_n$ [meV]")
-    alpha = result["alpha"]
-    text = rf"$\alpha$ = {float(alpha.mean()):.4f} ± {float(alpha.std()):.4f} meV nm"
-    panel.set_title(text)
+    panel.set_title(rf"$\alpha$ = {alpha_with_deviation(result['alpha'])}")
 
 
 def _misfit(panel: Any, result: xr.Dataset) -> None:
@@ -89,7 +109,7 @@ def _misfit(panel: Any, result: xr.Dataset) -> None:
     names = [rf"$G_\mathrm{{{name[2:]}}}$" for name in CONDUCTANCES]
     panel.set_xticks(position, names)
     largest = max(result["misfit"].max(), np.max(result.attrs["noise"]))
-    panel.set(ylabel="root mean square [$e^2/h$]", ylim=(0, 1.4 * largest or None))
+    panel.set(ylabel="r.m.s. [$e^2/h$]", ylim=(0, 1.4 * largest or None))
     panel.legend(frameon=False, ncols=2, loc="upper center")
 
 
@@ -109,6 +129,8 @@ def _conductances(
     for panel, values, title in ((measured, G, "measured"), (explained, answer, "explained")):
         image = _map(panel, measurement.mu, measurement.B, values, **norm)
         panel.set_title(rf"$G_\mathrm{{{name[2:]}}}$ {title}")
+    bias = measurement.bias[at]
+    measured.set_title(rf"$G_\mathrm{{{name[2:]}}}$, {bias:g} meV: measured")
     explained.set_ylabel("")
     figure.colorbar(image, ax=[measured, explained], label="$e^2/h$", location="bottom", aspect=30)
 
@@ -126,4 +148,13 @@ def _maps(figure: Any, visibility: Any, probability: Any, result: xr.Dataset) ->
 
 def _map(panel: Any, mu: FloatArray, B: FloatArray, values: Any, **options: Any) -> Any:
     panel.set(xlabel="$B$ [T]", ylabel=r"$\mu$ [meV]")
-    return panel.pcolormesh(B, mu, values, shading="nearest", rasterized=True, **options)
+    edges = _edges(B), _edges(mu)
+    return panel.pcolormesh(*edges, values, rasterized=True, **options)
+
+
+def _edges(axis: FloatArray) -> FloatArray:
+    """Return where the pixels of a map begin and end; one alone is as wide as the panel."""
+    if axis.size == 1:
+        return np.array([axis[0] - 0.5, axis[0] + 0.5])
+    middle = (axis[1:] + axis[:-1]) / 2
+    return np.concatenate([[2 * axis[0] - middle[0]], middle, [2 * axis[-1] - middle[-1]]])

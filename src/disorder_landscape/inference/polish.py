@@ -55,8 +55,8 @@ def polish(
     y, slope = linearise(observation, start)
     best, damping = objective(observation, x, y), 0.0
     for number in range(STEPS):
-        information = (slope / variance) @ slope.T + precision
-        linear = Gaussian(x, np.linalg.inv(information))
+        information = precision_of(observation, slope)
+        linear = Gaussian(x, np.asarray(np.linalg.inv(information), np.float64))
         spread = observation.unknowns.site_deviation(linear.covariance)
         told(number, overall_misfit(observation, y), spread)
         downhill = (slope / variance) @ (observation.data - y) - precision @ (x - prior.mean)
@@ -83,8 +83,14 @@ def polish(
             break
         slope = linearise(observation, replace(linear, mean=x))[1]
         damping = 0.0 if damping <= first else damping / factor
-    covariance = np.linalg.inv((slope / variance) @ slope.T + precision)
+    covariance = np.linalg.inv(precision_of(observation, slope))
     return Gaussian(x, (covariance + covariance.T) / 2)
+
+
+def precision_of(observation: Observation, slope: FloatArray) -> FloatArray:
+    """Return the inverse covariance of the posterior if data were linear (unknown, unknown)."""
+    prior = np.linalg.inv(observation.unknowns.prior.covariance)
+    return np.asarray((slope / observation.variance) @ slope.T + prior)
 
 
 def linearise(observation: Observation, about: Gaussian) -> tuple[FloatArray, FloatArray]:

@@ -7,6 +7,7 @@ import xarray as xr
 
 from disorder_landscape.arguments import numbers_of
 from disorder_landscape.config import TrainingConfig
+from disorder_landscape.inference.inversion import CONVERGED
 from disorder_landscape.inference.observation import noise_of_channels
 from disorder_landscape.learning.scaling import NOISE_FLOOR
 from disorder_landscape.physics.labels import CONDUCTANCES
@@ -18,6 +19,8 @@ ALIKE = 1.1
 """Misfits are the noise's, if they differ by less than this factor between the channels, …"""
 OTHERWISE = 1.25
 """… which is not what was stated, if they are more or less than it by this factor."""
+
+NOT_TO_BE_TRUSTED = "so neither the deviation below nor P(topological) says how sure this is"
 
 
 def parse_noise(text: str) -> float | dict[str, float]:
@@ -36,7 +39,7 @@ def parse_noise(text: str) -> float | dict[str, float]:
 def noise_hint(training: TrainingConfig, noise: float | dict[str, float]) -> str:
     """Return a line about a network that has never seen such errors; empty if it has."""
     most, known = noise_of_channels(noise).max(), training.largest_noise
-    if most <= UNUSED_TO * max(known, NOISE_FLOOR):
+    if training.noise_up_to is not None or most <= UNUSED_TO * max(known, NOISE_FLOOR):
         return ""
     return (
         f"This network was trained with errors of up to {known:g} e²/h: for {most:g} e²/h one of "
@@ -67,20 +70,31 @@ def stated_noise_hint(misfit: FloatArray, noise: FloatArray) -> str:
     )
 
 
+def alpha_with_deviation(alpha: xr.DataArray) -> str:
+    """Return α and its deviation over the members as text."""
+    mean, deviation = float(alpha.mean()), float(alpha.std())
+    said = f"± {deviation:.2g} meV nm" if deviation else "meV nm, as in the model"
+    return f"{mean:.5g} {said}"
+
+
 def summary(result: xr.Dataset) -> list[str]:
     """Return the lines that tell what `infer` has found."""
     deviation = float(np.sqrt((result["potential_deviation"] ** 2).mean()))
-    alpha = result["alpha"]
     attrs = result.attrs
     lines = [
         f"verdict         {attrs['verdict']}",
         f"from            {attrs['start']}",
         f"attempts        {attrs['attempts']}, rounds: {attrs['rounds']}",
         f"deviation of V  {1e3 * deviation:.3g} µeV, root mean square over the sites",
-        f"alpha           {float(alpha.mean()):.5g} ± {float(alpha.std()):.2g} meV nm",
+        f"alpha           {alpha_with_deviation(result['alpha'])}",
     ]
+    if attrs["verdict"] != CONVERGED:
+        lines.insert(1, f"                {NOT_TO_BE_TRUSTED}")
     misfits = zip(result["channel"].to_numpy(), result["misfit"].to_numpy(), strict=True)
     for (name, misfit), noise in zip(misfits, attrs["noise"], strict=True):
-        lines.append(f"misfit of {name}  {misfit:.5f} e²/h; noise: {noise:g} e²/h")
+        said = (
+            f"{misfit:.5f} e²/h; noise: {noise:g} e²/h" if np.isfinite(misfit) else "not measured"
+        )
+        lines.append(f"misfit of {name}  {said}")
     hint = stated_noise_hint(result["misfit"].to_numpy(), np.asarray(attrs["noise"]))
     return [*lines, hint] if hint else lines

@@ -28,6 +28,7 @@ import numpy as np
 
 from disorder_landscape.inference.members import Members
 from disorder_landscape.inference.observation import Observation, overall_misfit
+from disorder_landscape.inference.polish import linearise, precision_of
 from disorder_landscape.inference.regression import learn, variance_about_lines
 from disorder_landscape.inference.unknowns import Gaussian
 from disorder_landscape.inference.word import Word
@@ -61,8 +62,11 @@ class RoundSettings:
     least_shrinking: float = 0.35
     """A round makes no direction's deviation smaller than this part of what it was."""
     unexplained: float = 0.3
-    """Done when lines through the conductances leave less unexplained than this part of the noise,
-    …"""
+    """Done when lines through the conductances leave less unexplained than this part of the noise
+    and …"""
+    near: float = 2.0
+    """… the spread is less than this many times that of Gauss–Newton steps: much noise hides that
+    conductances are not straight, and such steps would end in the next valley, …"""
     patience: int = 8
     """… or when in so many rounds neither that has become less nor the spread, …"""
     narrower: float = 0.95
@@ -133,17 +137,29 @@ def rounds(
         yield one
         straight = one.unexplained < settings.unexplained
         if straight and share == 1:
-            return
+            name = f"near.{'.'.join(map(str, seed))}.{number}"
+            if (
+                recall(name, partial(_nearness, observation, one))["spread"]
+                > one.spread / settings.near
+            ):
+                return
         narrower = one.spread < settings.narrower * narrowest
         since = 0 if narrower or one.unexplained < least else since + 1
         least, narrowest = min(least, one.unexplained), one.spread if narrower else narrowest
-        if straight or since == settings.patience:
+        if (straight and share < 1) or since == settings.patience:
             if share == 1 or least > settings.fine:
                 return
             share, since, least, narrowest = 1.0, 0, np.inf, np.inf
             count = round(settings.members_on_all * count)
             members = _members(observation, share, seed, settings, word)
         distribution = one.distribution
+
+
+def _nearness(observation: Observation, one: Round) -> dict[str, Any]:
+    """Return the spread in meV that a Gauss–Newton step from a round's answer would end with."""
+    slope = linearise(observation, one.distribution)[1]
+    covariance = np.asarray(np.linalg.inv(precision_of(observation, slope)), np.float64)
+    return {"spread": observation.unknowns.site_deviation(covariance)}
 
 
 def _members(

@@ -22,7 +22,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from disorder_landscape.arguments import grid_in, number_in, require
+from disorder_landscape.arguments import grid_in, number_in, require, whole_number_in
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.inference.measurement import Measurement, measurement_of
 from disorder_landscape.inference.verdict import SIGNIFICANCE, comparison, scores
@@ -53,7 +53,8 @@ def verify(
     Parameters
     ----------
     prediction : Dataset
-        potential (site) in meV and alpha in meV nm of one wire, as `predict` returns them.
+        potential (site) in meV and alpha in meV nm of one wire, as `predict` returns them; or what
+        `infer` returns, whose mean is taken.
     measurements : Dataset or sequence of them
         G_LL … G_RL in e²/h with dims (mu, B, bias) in any order, and the attributes theta
         (radians), barrier (left and right, meV) and temperature (K), as `conductance` returns them.
@@ -92,8 +93,8 @@ def verify(
     require(bool(given), "measurement", "be one Dataset or more", "there is none")
     measured = [measurement_of(dataset) for dataset in given]
     noise = number_in("noise", noise, 0.0, 1.0, "e²/h")
-    controls = int(number_in("controls", controls, np.ceil(1 / SIGNIFICANCE) - 1, 10_000))
-    seed = int(number_in("seed", seed, 0, 2**63))
+    controls = whole_number_in("controls", controls, round(1 / SIGNIFICANCE) - 1, 10_000)
+    seed = whole_number_in("seed", seed, 0, 2**63)
     tried = grid_in("shifts", shifts, -1.0, 1.0, "meV")
     predicted = _predicted_wire(prediction)
     model = _disorder_model(prediction, predicted, config)
@@ -104,6 +105,9 @@ def verify(
 
 def _predicted_wire(prediction: xr.Dataset) -> Nanowire:
     must = "hold the potential and alpha of one wire, as `landscape predict` writes them"
+    if isinstance(prediction, xr.Dataset) and "potential_mean" in prediction.variables:
+        mean = {"potential": prediction["potential_mean"], "alpha": prediction["alpha"].mean()}
+        prediction = xr.Dataset(mean)  # of the members that `infer` has found
     for name, dims in (("potential", ("site",)), ("alpha", ())):
         there = isinstance(prediction, xr.Dataset) and name in prediction.variables
         require(there, "prediction", must, f"it lacks {name}")

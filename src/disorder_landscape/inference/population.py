@@ -1,0 +1,131 @@
+"""Members of a posterior that is wider than conductances are straight: importance sampling.
+
+Where the noise hides much, the posterior is as wide as a peak of the conductances or wider. Then it
+is no normal distribution about one optimum: it bends, and has valleys beside valleys. But there the
+rounds' own answers are nearly as wide, so that members of these, weighted with the exact posterior,
+are members of the posterior. The next members are drawn from a normal distribution with the moments
+of the weighted ones, and so on; all count, as if drawn from the mixture of all proposals (adaptive
+multiple importance sampling: Cornuet et al., Scand. J. Stat. 39, 798 (2012)). As long as a few
+members have all the weight, their weights are raised to a power below one (Koblents and Míguez,
+Stat. Comput. 25, 407 (2015)).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+from scipy.optimize import brentq
+
+from disorder_landscape.inference.members import log_mixture
+from disorder_landscape.inference.observation import Observation, objective, overall_misfit
+from disorder_landscape.inference.rounds import Recall
+from disorder_landscape.inference.unknowns import Gaussian
+from disorder_landscape.physics.parameters import FloatArray
+
+AT_A_TIME = 128
+"""Members that are drawn before the next proposal is made, at least, …"""
+PER_UNKNOWN = 12
+"""… and for each unknown."""
+ENOUGH = 150.0
+"""Done when the members are worth so many independent ones, …"""
+ITERATIONS = 10
+"""… or after so many iterations."""
+LEAST_SHARE = 0.25
+"""Of the members that are drawn at a time: what those that the next proposal comes from must be
+worth."""
+WIDER = 1.2
+"""The next members are drawn this much more widely than the weighted ones lie."""
+
+
+@dataclass(frozen=True, eq=False)
+class Population:
+    """Members (member, unknown), and weights (member,) whose sum is one."""
+
+    members: FloatArray
+    weight: FloatArray
+
+    @property
+    def worth(self) -> float:
+        """How many independent members these are worth."""
+        return float(1 / (self.weight**2).sum())
+
+    @property
+    def moments(self) -> Gaussian:
+        """The normal distribution of the same mean and covariance."""
+        mean = self.weight @ self.members
+        off = self.members - mean
+        covariance = (off.T * self.weight) @ off / (1 - 1 / self.worth)
+        return Gaussian(mean, (covariance + covariance.T) / 2)
+
+    def draw(self, rng: np.random.Generator, count: int) -> FloatArray:
+        """Return members (count, unknown) of equal weight, by systematic resampling."""
+        share = np.cumsum(self.weight)
+        at = np.searchsorted(share / share[-1], (rng.random() + np.arange(count)) / count)
+        return self.members[at]
+
+
+def population(
+    observation: Observation,
+    proposals: Sequence[Gaussian],
+    seed: Sequence[int],
+    recall: Recall = lambda name, calculate: calculate(),
+    told: Callable[[int, float, float], None] = lambda number, misfit, spread: None,
+) -> Population:
+    """Draw members of the posterior.
+
+    Parameters
+    ----------
+    observation : Observation
+    proposals : sequence of Gaussian
+        Where the first members come from, which must be about as wide as the posterior.
+    seed : sequence of int
+    recall : callable, optional
+        `Checkpoint.recall`.
+    told : callable, optional
+        Told the number of each iteration, the root-mean-square misfit of its best member in e²/h
+        and the deviation of V in meV.
+    """
+    unknowns = observation.unknowns
+    count = max(AT_A_TIME, PER_UNKNOWN * len(unknowns.names))
+    drawn: list[tuple[Gaussian, int]] = []
+    X, height = np.empty((0, len(unknowns.names))), np.empty(0)
+    for number in range(ITERATIONS):
+        rng = np.random.default_rng([*seed, number])
+        each = 2 * -(-count // (2 * len(proposals)))
+        drawn += [(proposal, each) for proposal in proposals]
+        new = np.concatenate([proposal.draw(rng, each) for proposal in proposals])
+        name = f"population.{'.'.join(map(str, seed))}.{number}"
+        shown = recall(name, partial(_shown, observation, new))
+        X, height = np.concatenate([X, new]), np.append(height, shown["height"])
+        found = tamed(X, -0.5 * height - log_mixture(drawn, X), LEAST_SHARE * count)
+        told(number, shown["misfit"], unknowns.site_deviation(found.moments.covariance))
+        if found.worth >= ENOUGH:
+            break
+        proposals = [Gaussian(found.moments.mean, WIDER**2 * found.moments.covariance)]
+    return found
+
+
+def _shown(observation: Observation, X: FloatArray) -> dict[str, Any]:
+    Y = observation.simulate(X)
+    height = objective(observation, X, Y)
+    return {
+        "height": height.tolist(),
+        "misfit": overall_misfit(observation, Y[int(height.argmin())]),
+    }
+
+
+def tamed(X: FloatArray, log_weight: FloatArray, worth: float) -> Population:
+    """Return members with weights to the highest power up to one that leaves them this worth."""
+
+    def to_the(power: float) -> Population:
+        weight = np.exp(power * (log_weight - log_weight.max()))
+        return Population(X, weight / weight.sum())
+
+    whole = to_the(1.0)
+    if whole.worth >= worth:
+        return whole
+    return to_the(float(brentq(lambda power: to_the(power).worth - worth, 0.0, 1.0)))

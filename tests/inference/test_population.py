@@ -1,0 +1,133 @@
+"""Members of posteriors that are known: of lines, and of two valleys."""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import pytest
+
+from disorder_landscape.config import DatasetConfig
+from disorder_landscape.inference.checkpoint import Checkpoint
+from disorder_landscape.inference.inversion import CONVERGED, Attempt, judged, verdict
+from disorder_landscape.inference.population import ENOUGH, Population, population, tamed
+from disorder_landscape.inference.unknowns import Gaussian, Unknowns
+
+UNKNOWNS = Unknowns(DatasetConfig(realizations=1, components=3, sites=50))
+SIZE = len(UNKNOWNS.names)
+PRIOR = UNKNOWNS.prior
+RNG = np.random.default_rng(5)
+SLOPE = RNG.normal(size=(SIZE, 40)) / np.sqrt(np.diag(PRIOR.covariance))[:, None]
+
+
+@dataclass(frozen=True)
+class Measured:
+    temperature: float = 0.05
+
+
+@dataclass(frozen=True)
+class Lines:
+    """Data that are linear in the unknowns."""
+
+    data: np.ndarray
+    unknowns: Unknowns = UNKNOWNS
+    variance: np.ndarray = field(default_factory=lambda: np.full(40, 1.0))
+    channel: np.ndarray = field(default_factory=lambda: np.zeros(40, dtype=int))
+    measurement: Measured = Measured()
+
+    def simulate(self, X):
+        return (X - PRIOR.mean) @ SLOPE
+
+
+class Folds(Lines):
+    """Data that do not tell on which side of the prior's mean the unknowns are."""
+
+    def simulate(self, X):
+        return super().simulate(X) ** 2
+
+
+def posterior(lines):
+    """Bayes' theorem for linear data."""
+    weighted = SLOPE / lines.variance
+    covariance = np.linalg.inv(weighted @ SLOPE.T + np.linalg.inv(PRIOR.covariance))
+    return Gaussian(PRIOR.mean + covariance @ (weighted @ lines.data), covariance)
+
+
+@pytest.fixture(scope="module")
+def lines():
+    return Lines(RNG.normal(size=SIZE) @ (SLOPE * np.sqrt(np.diag(PRIOR.covariance))[:, None]))
+
+
+def test_members_have_the_posteriors_moments(lines):
+    exact = posterior(lines)
+    scale = np.sqrt(np.diag(exact.covariance))
+    far = Gaussian(exact.mean + 3 * scale, 9 * exact.covariance)
+    steps = []
+    found = population(lines, [far], [0], told=lambda *step: steps.append(step))
+    assert [number for number, _, _ in steps] == list(range(len(steps)))
+    assert found.worth >= ENOUGH
+    assert found.members.shape == (128 * len(steps), SIZE)
+    assert abs((found.moments.mean - exact.mean) / scale).max() < 0.3
+    ratio = np.linalg.eigvals(np.linalg.solve(exact.covariance, found.moments.covariance))
+    assert 0.5 < ratio.real.min() <= ratio.real.max() < 1.7
+
+
+def test_both_valleys_have_their_share():
+    truth = PRIOR.mean + 1.5 * np.sqrt(np.diag(PRIOR.covariance))
+    folds = Folds(((truth - PRIOR.mean) @ SLOPE) ** 2, variance=np.full(40, 4.0))
+    about = [Gaussian(at, 0.05 * PRIOR.covariance) for at in (truth, 2 * PRIOR.mean - truth)]
+    found = population(folds, about, [0])
+    side = (found.members - PRIOR.mean) @ (truth - PRIOR.mean) > 0
+    assert 0.35 < found.weight[side].sum() < 0.65
+    assert found.moments.squared_distance(truth) < 3 * SIZE
+    drawn = found.draw(np.random.default_rng(0), 1000)
+    side = (drawn - PRIOR.mean) @ (truth - PRIOR.mean) > 0
+    assert 0.35 < side.mean() < 0.65
+
+
+def test_weights_are_tamed_no_more_than_asked():
+    X, log_weight = RNG.normal(size=(500, SIZE)), 30 * RNG.normal(size=500)
+    tame = tamed(X, log_weight, 100.0)
+    assert tame.worth == pytest.approx(100.0)
+    np.testing.assert_array_equal(np.argsort(tame.weight), np.argsort(log_weight))
+    assert tamed(X, 0.01 * log_weight, 100.0).worth > 100
+    assert Population(X, np.full(500, 1 / 500)).worth == pytest.approx(500)
+
+
+def test_members_are_drawn_as_often_as_they_weigh():
+    X = np.arange(4.0)[:, None]
+    drawn = Population(X, np.array([0.5, 0.25, 0.25, 0.0])).draw(RNG, 400)
+    np.testing.assert_array_equal(np.bincount(drawn[:, 0].astype(int)), [200, 100, 100])
+
+
+def test_an_interrupted_population_goes_on(lines, tmp_path):
+    start = Gaussian(PRIOR.mean, PRIOR.covariance)
+    path = tmp_path / "unfinished.json"
+    first = population(lines, [start], [0], Checkpoint(path).recall)
+    again = Checkpoint(path)
+    assert len(again) > 0
+
+    def fail(X):
+        raise AssertionError("simulated twice")
+
+    object.__setattr__(lines, "simulate", fail)
+    second = population(lines, [start], [0], again.recall)
+    object.__delattr__(lines, "simulate")
+    np.testing.assert_array_equal(first.weight, second.weight)
+    np.testing.assert_array_equal(first.members, second.members)
+
+
+@pytest.mark.parametrize(("width", "wide"), [(1e-3, False), (0.02, True)])
+def test_answers_wider_than_conductances_are_straight_are_populations(lines, width, wide):
+    """At 50 mK kT is 4.3 µeV."""
+    exact = posterior(lines)
+    narrow = exact.covariance * (width / UNKNOWNS.site_deviation(exact.covariance)) ** 2
+    answer = Gaussian(exact.mean, narrow)
+    one = Attempt(exact, answer, lines.simulate(answer.mean[None])[0], 0.0, 0.0, 1)
+    attempts = judged(lines, [one, replace(one, objective=1.0)], [0])
+    assert verdict(lines, attempts) == CONVERGED
+    assert (attempts[0].population is not None) == wide
+    deviation = UNKNOWNS.site_deviation(attempts[0].answer.covariance)
+    expected = UNKNOWNS.site_deviation(exact.covariance) if wide else width
+    assert deviation == pytest.approx(expected, rel=0.2)
+    assert attempts[1].population is None
+    poor = Attempt(exact, answer, one.data, 0.0, 9.0, 1)
+    assert judged(lines, [poor], [0]) == [poor]  # what does not fit stays as it is
