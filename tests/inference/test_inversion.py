@@ -306,7 +306,7 @@ def test_noise_that_is_other_than_stated_is_noticed(misfit, says):
 
 def test_the_summary_says_it_all(inferred):
     failed = inferred.assign_attrs(verdict=NOT_DESCRIBED)
-    assert "neither the deviation below" in summary(failed)[1]
+    assert "neither the error bars below" in summary(failed)[1]
     known = summary(inferred.assign(alpha=8.0 + 0 * inferred["alpha"]))
     assert "alpha           8 meV nm, as in the model" in known
     lines = "\n".join(summary(inferred))

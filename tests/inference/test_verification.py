@@ -196,3 +196,16 @@ def test_bad_input_is_one_sentence(arguments, says):
 def test_a_wire_of_another_length_is_a_prediction_like_any_other():
     other = Nanowire(np.zeros(60))
     assert verify(prediction_of(other), measure(TRUE))["p_value"] > 0.05
+
+
+def test_what_an_inversion_has_found_is_judged_by_its_mean():
+    one = prediction_of(TRUE, shift=TRUE.potential.mean())
+    apart = 1e-4 * np.array([-1.0, 0.0, 1.0])
+    potential = one["potential"] + xr.DataArray(apart, dims="member")
+    found = one.assign(
+        potential=potential.transpose("member", "site"),
+        potential_mean=potential.mean("member"),
+        alpha=TRUE.alpha + xr.DataArray(apart, dims="member"),
+    )
+    measured = measure(TRUE, barrier=(12.0, 30.0))
+    assert verify(found, measured, shifts=[0.0])["mismatch"].max() < 1e-9

@@ -20,7 +20,7 @@ ALIKE = 1.1
 OTHERWISE = 1.25
 """… which is not what was stated, if they are more or less than it by this factor."""
 
-NOT_TO_BE_TRUSTED = "so neither the deviation below nor P(topological) says how sure this is"
+NOT_TO_BE_TRUSTED = "so neither the error bars below nor P(topological) are to be trusted"
 
 
 def parse_noise(text: str) -> float | dict[str, float]:
@@ -85,7 +85,7 @@ def summary(result: xr.Dataset) -> list[str]:
         f"verdict         {attrs['verdict']}",
         f"from            {attrs['start']}",
         f"attempts        {attrs['attempts']}, rounds: {attrs['rounds']}",
-        f"deviation of V  {1e3 * deviation:.3g} µeV, root mean square over the sites",
+        f"error bar of V  {1e3 * deviation:.3g} µeV, root mean square over the sites",
         f"alpha           {alpha_with_deviation(result['alpha'])}",
     ]
     if attrs["verdict"] != CONVERGED:
