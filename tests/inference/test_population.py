@@ -7,7 +7,13 @@ import pytest
 
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.inference.checkpoint import Checkpoint
-from disorder_landscape.inference.inversion import CONVERGED, Attempt, judged, verdict
+from disorder_landscape.inference.inversion import (
+    CONVERGED,
+    NOT_CONVERGED,
+    Attempt,
+    judged,
+    verdict,
+)
 from disorder_landscape.inference.population import ENOUGH, Population, population, tamed
 from disorder_landscape.inference.unknowns import Gaussian, Unknowns
 
@@ -87,6 +93,7 @@ def test_weights_are_tamed_no_more_than_asked():
     X, log_weight = RNG.normal(size=(500, SIZE)), 30 * RNG.normal(size=500)
     tame = tamed(X, log_weight, 100.0)
     assert tame.worth == pytest.approx(100.0)
+    assert 0 < tame.power < 1
     np.testing.assert_array_equal(np.argsort(tame.weight), np.argsort(log_weight))
     assert tamed(X, 0.01 * log_weight, 100.0).worth > 100
     assert Population(X, np.full(500, 1 / 500)).worth == pytest.approx(500)
@@ -129,5 +136,9 @@ def test_answers_wider_than_conductances_are_straight_are_populations(lines, wid
     expected = UNKNOWNS.site_deviation(exact.covariance) if wide else width
     assert deviation == pytest.approx(expected, rel=0.2)
     assert attempts[1].population is None
+    if wide:
+        tamed_only = replace(attempts[0].population, power=0.5)
+        doubtful = [replace(attempts[0], population=tamed_only), attempts[1]]
+        assert verdict(lines, doubtful) == NOT_CONVERGED
     poor = Attempt(exact, answer, one.data, 0.0, 9.0, 1)
     assert judged(lines, [poor], [0]) == [poor]  # what does not fit stays as it is

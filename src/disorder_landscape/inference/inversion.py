@@ -78,6 +78,11 @@ class Attempt:
         """Whether the noise explains what is left of the misfit."""
         return self.excess <= TOLERATED
 
+    @property
+    def is_posterior(self) -> bool:
+        """Whether the error bars are those of the posterior, as far as is known."""
+        return self.population is None or self.population.power == 1
+
     def draw(self, rng: np.random.Generator, members: int) -> FloatArray:
         """Return an even number of members of the posterior, shape (member, unknown)."""
         return (self.answer if self.population is None else self.population).draw(rng, members)
@@ -235,7 +240,8 @@ def verdict(observation: Observation, attempts: list[Attempt]) -> str:
     others = [attempt for attempt in attempts if attempt is not chosen]
     agreed = any(same_answer(observation, chosen, other) for other in others)
     if chosen.fits:
-        return CONVERGED if agreed or is_surely_right(observation) else NOT_CONVERGED
+        known = agreed or is_surely_right(observation)
+        return CONVERGED if known and chosen.is_posterior else NOT_CONVERGED
     as_bad = any(same_misfit(observation, chosen, other) for other in others)
     return NOT_DESCRIBED if agreed or as_bad else NOT_CONVERGED
 

@@ -47,6 +47,8 @@ class Population:
 
     members: FloatArray
     weight: FloatArray
+    power: float = 1.0
+    """To which the weights were raised: where it is less, the members are not the posterior's."""
 
     @property
     def worth(self) -> float:
@@ -75,7 +77,7 @@ def population(
     recall: Recall = lambda name, calculate: calculate(),
     told: Callable[[int, float, float], None] = lambda number, misfit, spread: None,
 ) -> Population:
-    """Draw members of the posterior.
+    """Draw members of the posterior, or of a wider one if these are too few for that (`power`).
 
     Parameters
     ----------
@@ -123,7 +125,7 @@ def tamed(X: FloatArray, log_weight: FloatArray, worth: float) -> Population:
 
     def to_the(power: float) -> Population:
         weight = np.exp(power * (log_weight - log_weight.max()))
-        return Population(X, weight / weight.sum())
+        return Population(X, weight / weight.sum(), power)
 
     whole = to_the(1.0)
     if whole.worth >= worth:

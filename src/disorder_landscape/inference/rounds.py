@@ -137,11 +137,9 @@ def rounds(
         yield one
         straight = one.unexplained < settings.unexplained
         if straight and share == 1:
-            name = f"near.{'.'.join(map(str, seed))}.{number}"
-            if (
-                recall(name, partial(_nearness, observation, one))["spread"]
-                > one.spread / settings.near
-            ):
+            make = partial(_gauss_newton, observation, one)
+            step = recall(f"near.{'.'.join(map(str, seed))}.{number}", make)
+            if one.spread < settings.near * step["spread"]:
                 return
         narrower = one.spread < settings.narrower * narrowest
         since = 0 if narrower or one.unexplained < least else since + 1
@@ -155,8 +153,8 @@ def rounds(
         distribution = one.distribution
 
 
-def _nearness(observation: Observation, one: Round) -> dict[str, Any]:
-    """Return the spread in meV that a Gauss–Newton step from a round's answer would end with."""
+def _gauss_newton(observation: Observation, one: Round) -> dict[str, Any]:
+    """Return the `spread` in meV that a Gauss–Newton step from a round's answer ends with."""
     slope = linearise(observation, one.distribution)[1]
     covariance = np.asarray(np.linalg.inv(precision_of(observation, slope)), np.float64)
     return {"spread": observation.unknowns.site_deviation(covariance)}
