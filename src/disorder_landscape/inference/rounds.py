@@ -70,7 +70,9 @@ class RoundSettings:
     patience: int = 8
     """… or when in so many rounds neither that has become less nor the spread, …"""
     narrower: float = 0.95
-    """… by this factor at least: these lead nowhere."""
+    """… by this factor at least: these lead nowhere, …"""
+    patience_when_straight: int = 3
+    """… or in so many where lines leave no more unexplained than was said."""
     rounds: int = 50
     most: int = 2000
     """Members of this and of earlier rounds that are kept."""
@@ -144,7 +146,8 @@ def rounds(
         narrower = one.spread < settings.narrower * narrowest
         since = 0 if narrower or one.unexplained < least else since + 1
         least, narrowest = min(least, one.unexplained), one.spread if narrower else narrowest
-        if (straight and share < 1) or since == settings.patience:
+        patience = settings.patience_when_straight if straight else settings.patience
+        if (straight and share < 1) or since >= patience:
             if share == 1 or least > settings.fine:
                 return
             share, since, least, narrowest = 1.0, 0, np.inf, np.inf
