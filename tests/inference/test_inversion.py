@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import disorder_landscape as dl
 from disorder_landscape import ArgumentError, Nanowire, conductance
@@ -128,6 +129,28 @@ def test_what_the_model_cannot_explain_is_flagged(unmodelled):
     assert result.attrs["verdict"] in (NOT_DESCRIBED, NOT_CONVERGED)
     assert result.attrs["attempts"] == 2
     assert result.attrs["excess"] > 10
+
+
+def test_much_noise_makes_the_answer_a_population(tmp_path):
+    """Interrupted while its members are drawn, it comes to the same."""
+    noise, file = 0.05, tmp_path / "unfinished.json"
+    noisy = measure(TRUE.wire, noise).isel(mu=[0, 3, 5], B=[1, 3, 5], bias=[1, 2])
+
+    def interrupt(step):
+        if step.stage == "population":
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        infer(noisy, noise, checkpoint=file, told=interrupt)
+    result, again = infer(noisy, noise, checkpoint=file), infer(noisy, noise)
+    xr.testing.assert_identical(result, again)
+    assert result.attrs["verdict"] == CONVERGED
+    assert result.attrs["attempts"] == 2
+    assert result.attrs["worth"] >= 150
+    spread = float(np.sqrt((result["potential_deviation"] ** 2).mean()))
+    assert spread > 0.0043  # kT
+    assert site_error(result) < 3 * spread
+    np.testing.assert_allclose(result["misfit"], noise, rtol=0.5)
 
 
 def test_an_interrupted_run_goes_on(measured, inferred, tmp_path):

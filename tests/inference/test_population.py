@@ -14,7 +14,7 @@ from disorder_landscape.inference.inversion import (
     judged,
     verdict,
 )
-from disorder_landscape.inference.population import ENOUGH, Population, population, tamed
+from disorder_landscape.inference.population import WORTH, Population, population, tamed
 from disorder_landscape.inference.unknowns import Gaussian, Unknowns
 
 UNKNOWNS = Unknowns(DatasetConfig(realizations=1, components=3, sites=50))
@@ -69,7 +69,7 @@ def test_members_have_the_posteriors_moments(lines):
     steps = []
     found = population(lines, [far], [0], told=lambda *step: steps.append(step))
     assert [number for number, _, _ in steps] == list(range(len(steps)))
-    assert found.worth >= ENOUGH
+    assert found.worth >= WORTH
     assert found.members.shape == (128 * len(steps), SIZE)
     assert abs((found.moments.mean - exact.mean) / scale).max() < 0.3
     ratio = np.linalg.eigvals(np.linalg.solve(exact.covariance, found.moments.covariance))
@@ -96,7 +96,18 @@ def test_weights_are_tamed_no_more_than_asked():
     assert 0 < tame.power < 1
     np.testing.assert_array_equal(np.argsort(tame.weight), np.argsort(log_weight))
     assert tamed(X, 0.01 * log_weight, 100.0).worth > 100
-    assert Population(X, np.full(500, 1 / 500)).worth == pytest.approx(500)
+
+
+def test_members_are_enough_that_are_worth_it():
+    """As many as are needed for each unknown, and of the posterior itself."""
+    even = Population(np.zeros((500, SIZE)), np.full(500, 1 / 500))
+    assert even.worth == pytest.approx(500)
+    assert even.is_enough
+    assert not replace(even, power=0.9).is_enough
+    assert not replace(even, members=np.zeros((500, 50))).is_enough
+    one = np.full(500, 0.1 / 499)
+    one[0] = 0.9
+    assert not replace(even, weight=one).is_enough
 
 
 def test_members_are_drawn_as_often_as_they_weigh():
@@ -140,5 +151,6 @@ def test_answers_wider_than_conductances_are_straight_are_populations(lines, wid
         tamed_only = replace(attempts[0].population, power=0.5)
         doubtful = [replace(attempts[0], population=tamed_only), attempts[1]]
         assert verdict(lines, doubtful) == NOT_CONVERGED
+        np.testing.assert_array_equal(attempts[0].data, one.data)  # of the most probable wire
     poor = Attempt(exact, answer, one.data, 0.0, 9.0, 1)
     assert judged(lines, [poor], [0]) == [poor]  # what does not fit stays as it is

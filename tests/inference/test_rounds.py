@@ -19,7 +19,7 @@ from disorder_landscape.inference.inversion import (
 )
 from disorder_landscape.inference.members import Members, log_density
 from disorder_landscape.inference.observation import Observation, noise_of_channels
-from disorder_landscape.inference.polish import linearise, polish
+from disorder_landscape.inference.polish import linearise, polish, precision_of
 from disorder_landscape.inference.posterior import independence_chain, predictive_p
 from disorder_landscape.inference.regression import (
     RIDGES,
@@ -113,6 +113,25 @@ def test_rounds_that_lead_nowhere_end(linear, fine):
         assert min(values[-settings.patience :]) > min(values)
     assert min(one.unexplained for one in found) > settings.unexplained
     assert (shares[-1] == 1) == (fine == np.inf)  # all data are tried if it might be the noise
+
+
+def test_rounds_go_on_as_long_as_they_know_less_than_a_step_would():
+    """Where noise hides that the data are not straight: else steps end in the next valley."""
+    rng = np.random.default_rng(3)
+    slope = rng.normal(size=(SIZE, 40)) / np.sqrt(np.diag(UNKNOWNS.prior.covariance))[:, None]
+    waves = Linear(np.zeros(40), slope / 3, bend=1.0, variance=np.full(40, 1.0))
+    waves.data = waves.simulate(UNKNOWNS.prior.draw(rng, 2)[0]) + rng.normal(size=40)
+    counts = {}
+    for near, patience in [(np.inf, 3), (2.0, 3), (0.0, 3), (0.0, 6)]:
+        settings = replace(SETTINGS, near=near, unexplained=np.inf, patience_when_straight=patience)
+        found = list(rounds(waves, UNKNOWNS.prior, [0], settings))
+        counts[near, patience] = len(found)
+        if near == 2.0:
+            step = linearise(waves, found[-1].distribution)[1]
+            bar = UNKNOWNS.site_deviation(np.linalg.inv(precision_of(waves, step)))
+            assert found[-1].spread < 2.0 * bar
+    assert counts[np.inf, 3] == 2  # one round on some data, one on all
+    assert counts[np.inf, 3] < counts[2.0, 3] < counts[0.0, 3] < counts[0.0, 6] < 50
 
 
 def test_rounds_on_lines_do_not_count_data_twice(linear):

@@ -22,6 +22,7 @@ from disorder_landscape.inference.inversion import (
 )
 from disorder_landscape.inference.measurement import Measurement, measurement_of, settings_of
 from disorder_landscape.inference.observation import Observation, noise_of_channels, stated_noise
+from disorder_landscape.inference.rounds import WITH_WORD
 from disorder_landscape.inference.unknowns import Unknowns
 from disorder_landscape.learning.model import (
     TrainedModel,
@@ -83,10 +84,11 @@ def infer(
     Dataset
         Of the members: potential (member, site) and components (member, component) in meV, alpha
         (member) in meV nm. potential_mean and potential_deviation (site). misfit (channel) in
-        e²/h, NaN where nothing was measured. Conductances of the mean, G_LL … G_RL (mu, B, bias).
-        On a finer grid: T_IV (lead, map_mu, map_B) of the mean and P_topological (map_mu, map_B),
-        the share of the members with det r < 0 at the left end. Attributes: verdict ("converged",
-        "not converged" or "not described by the model"), excess, attempts, rounds, start, noise.
+        e²/h, of the most probable wire, NaN where nothing was measured. Of the mean: conductances
+        G_LL … G_RL (mu, B, bias) and, on a finer grid, T_IV (lead, map_mu, map_B). P_topological
+        (map_mu, map_B), the share of the members with det r < 0. Attributes: verdict ("converged",
+        "not converged" or "not described by the model"), excess, attempts, rounds, start, noise;
+        where the members are a population, how many independent ones they are worth.
 
     Raises
     ------
@@ -114,8 +116,10 @@ def infer(
         start = "the prior, with the network's word on each wire"
     if network and not whole:
         start += ", because the network needs all conductances and some are missing"
-    fingerprint = repr((whole_config, errors.tolist(), seed, settings, start, measurement))
-    notes = Checkpoint(checkpoint, fingerprint.encode() + measurement.G.tobytes())
+    usual = settings or (InversionSettings(), WITH_WORD)
+    fingerprint = repr((whole_config, errors.tolist(), seed, usual, start)).encode()
+    fingerprint += b"".join(np.asarray(value).tobytes() for value in vars(measurement).values())
+    notes = Checkpoint(checkpoint, fingerprint)
     attempts = invert(observation, trained, seed, settings, told, notes)
     chosen = best(attempts)
     result = _result(observation, chosen, members, seed)
@@ -131,6 +135,8 @@ def infer(
         "theta": measurement.theta,
         "config_hash": config.hash,
     }
+    if chosen.population is not None:
+        result.attrs["worth"] = chosen.population.worth
     return result
 
 

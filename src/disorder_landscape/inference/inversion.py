@@ -31,6 +31,8 @@ WRONG_MISFIT = 0.001
 """Difference in e²/h, root mean square, that tells a wrong answer from the right one. If the noise
 hides less, an answer that fits is right; otherwise a second attempt must agree: of 200 wires of ten
 components with errors of 0.01 e²/h, three had a wrong answer that fitted."""
+FEW_DATA = 10
+"""For each unknown: a wrong answer may fit fewer, whatever the noise."""
 SAME_ANSWER = 2.0
 """Two optima are the same if they are closer than this many of their own deviations, root mean
 square over the principal axes (in valleys that bend they differ by one or so)."""
@@ -52,7 +54,8 @@ class InversionSettings:
     attempts: int = 3
     """The first starts from the network's guess, the others from the disorder model's prior."""
     more_members: float = 1.25
-    """Each further attempt has so many times the members, and shrinks their spread more slowly."""
+    """Each further attempt has so many times the members for each unknown, and shrinks their spread
+    more slowly."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +66,7 @@ class Attempt:
     """Where members of one more round would have been drawn."""
     answer: Gaussian
     data: FloatArray
-    """What its mean shows, shape (datum,)."""
+    """What the most probable wire shows, shape (datum,)."""
     objective: float
     """−2 log of its posterior density, up to a constant."""
     excess: float
@@ -81,7 +84,7 @@ class Attempt:
     @property
     def is_posterior(self) -> bool:
         """Whether the error bars are those of the posterior, as far as is known."""
-        return self.population is None or self.population.power == 1
+        return self.population is None or self.population.is_enough
 
     def draw(self, rng: np.random.Generator, members: int) -> FloatArray:
         """Return an even number of members of the posterior, shape (member, unknown)."""
@@ -148,9 +151,9 @@ def invert(
         answer = _recalled(recall, f"polish.{number}", make)
         attempts.append(_attempt(observation, found, answer, count))
         outcome = attempts
-        if is_surely_right(observation) or number > 0:
+        if number > 0 or settings.attempts == 1 or is_surely_right(observation):
             tell = partial(_tell, told, number, "population")
-            outcome = judged(observation, attempts, [seed, number, 2], recall, tell)
+            outcome = judged(observation, attempts, [seed, number, 2**31 + 2], recall, tell)
         if verdict(observation, outcome) != NOT_CONVERGED:
             break
     return outcome
@@ -194,9 +197,7 @@ def judged(
         return attempts
     proposals = [attempt.last for attempt in attempts if attempt.fits]
     drawn = population(observation, proposals, seed, recall, told)
-    answer = drawn.moments
-    data = observation.simulate(answer.mean[None])[0]
-    instead = replace(chosen, answer=answer, data=data, population=drawn)
+    instead = replace(chosen, answer=drawn.moments, population=drawn)
     return [instead if attempt is chosen else attempt for attempt in attempts]
 
 
@@ -248,8 +249,9 @@ def verdict(observation: Observation, attempts: list[Attempt]) -> str:
 
 def is_surely_right(observation: Observation) -> bool:
     """Return whether the noise hides so little that an answer that fits needs no second attempt."""
-    hidden = TOLERATED * np.sqrt(2 / observation.data.size) * observation.variance.mean()
-    return bool(hidden < WRONG_MISFIT**2)
+    count = observation.data.size
+    hidden = TOLERATED * np.sqrt(2 / count) * observation.variance.mean()
+    return bool(hidden < WRONG_MISFIT**2 and count >= FEW_DATA * len(observation.unknowns.names))
 
 
 def same_answer(observation: Observation, one: Attempt, other: Attempt) -> bool:

@@ -30,10 +30,12 @@ AT_A_TIME = 128
 """Members that are drawn before the next proposal is made, at least, …"""
 PER_UNKNOWN = 12
 """… and for each unknown."""
-ENOUGH = 150.0
+WORTH = 150.0
 """Done when the members are worth so many independent ones, …"""
+WORTH_PER_UNKNOWN = 12.0
+"""… and for each unknown, or …"""
 ITERATIONS = 10
-"""… or after so many iterations."""
+"""… after so many iterations."""
 LEAST_SHARE = 0.25
 """Of the members that are drawn at a time: what those that the next proposal comes from must be
 worth."""
@@ -48,12 +50,19 @@ class Population:
     members: FloatArray
     weight: FloatArray
     power: float = 1.0
-    """To which the weights were raised: where it is less, the members are not the posterior's."""
+    """To which the weights were raised: where it is less, the members are of a wider distribution
+    than the posterior."""
 
     @property
     def worth(self) -> float:
         """How many independent members these are worth."""
         return float(1 / (self.weight**2).sum())
+
+    @property
+    def is_enough(self) -> bool:
+        """Whether these are members of the posterior, and as many as are needed."""
+        needed = max(WORTH, WORTH_PER_UNKNOWN * self.members.shape[1])
+        return self.power == 1 and self.worth >= needed
 
     @property
     def moments(self) -> Gaussian:
@@ -105,7 +114,7 @@ def population(
         X, height = np.concatenate([X, new]), np.append(height, shown["height"])
         found = tamed(X, -0.5 * height - log_mixture(drawn, X), LEAST_SHARE * count)
         told(number, shown["misfit"], unknowns.site_deviation(found.moments.covariance))
-        if found.worth >= ENOUGH:
+        if found.is_enough:
             break
         proposals = [Gaussian(found.moments.mean, WIDER**2 * found.moments.covariance)]
     return found
