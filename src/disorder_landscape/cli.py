@@ -274,7 +274,8 @@ def infer(
         result = find(
             measured, model, errors, not from_prior, members, seed, None, unfinished, told
         )
-    write_dataset(result, output, provenance(" ".join(["landscape", *sys.argv[1:]])))
+    attrs = provenance(" ".join(["landscape", *sys.argv[1:]]))
+    write_dataset(result, output, attrs, may_lack=["misfit"])  # of channels without data
     unfinished.unlink(missing_ok=True)
     if plot is not None:
         usual = {name: result.attrs[name] for name in ("theta", "barrier", "temperature")}

@@ -433,6 +433,8 @@ def test_one_answer_that_fits_is_enough_where_the_noise_hides_little(linear, noi
     answer = Gaussian(np.zeros(SIZE), np.eye(SIZE))
     alone = Attempt(answer, answer, measured.data, objective=0.0, excess=0.0, rounds=5)
     assert verdict(measured, [alone]) == expected
+    few = Linear(measured.data[:20], linear.slope[:, :20], variance=measured.variance[:20])
+    assert verdict(few, [alone]) == NOT_CONVERGED  # a wrong answer may fit four for each unknown
     assert verdict(measured, [alone, replace(alone, objective=1.0)]) == CONVERGED
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Hashable, Iterable, Mapping
 from importlib.metadata import version
 from pathlib import Path
 
@@ -22,8 +22,21 @@ def provenance(command: str) -> dict[str, str]:
     return {"command": command, **{f"version_{name}": version(name) for name in PACKAGES}}
 
 
-def write_dataset(dataset: xr.Dataset, path: Path, attrs: Mapping[str, object]) -> None:
+def write_dataset(
+    dataset: xr.Dataset,
+    path: Path,
+    attrs: Mapping[str, object],
+    may_lack: Collection[Hashable] = (),
+) -> None:
     """Write a netCDF4 file with these further attributes; it appears whole or not at all.
+
+    Parameters
+    ----------
+    dataset : Dataset
+    path : Path
+    attrs : mapping
+    may_lack : collection
+        Names of variables that may hold NaN.
 
     Raises
     ------
@@ -31,7 +44,7 @@ def write_dataset(dataset: xr.Dataset, path: Path, attrs: Mapping[str, object]) 
         If a number in it is not finite, the folder cannot be written, or the disk is full.
     """
     for name, variable in dataset.variables.items():
-        if np.issubdtype(variable.dtype, np.floating):
+        if np.issubdtype(variable.dtype, np.floating) and name not in may_lack:
             bad = int((~np.isfinite(variable.to_numpy())).sum())
             require(bad == 0, "dataset", "be finite", f"{name} has {bad} numbers that are not")
     with replacing(path) as temporary:
@@ -67,7 +80,7 @@ def read_dataset(path: str | Path, variables: Iterable[str] = ()) -> xr.Dataset:
     ArgumentError
         If it is missing, truncated, not netCDF, or lacks one of the variables.
     """
-    must = "be a netCDF-4 file"
+    must = "be a netCDF file (version 4)"
     try:
         with xr.open_dataset(path, engine="h5netcdf") as file:
             dataset = file.load()

@@ -31,7 +31,7 @@ WRONG_MISFIT = 0.001
 """Difference in e²/h, root mean square, that tells a wrong answer from the right one. If the noise
 hides less, an answer that fits is right; otherwise a second attempt must agree: of 200 wires of ten
 components with errors of 0.01 e²/h, three had a wrong answer that fitted."""
-FEW_DATA = 10
+FEW_DATA = 5
 """For each unknown: a wrong answer may fit fewer, whatever the noise."""
 SAME_ANSWER = 2.0
 """Two optima are the same if they are closer than this many of their own deviations, root mean
