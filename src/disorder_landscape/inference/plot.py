@@ -148,6 +148,10 @@ def _maps(figure: Any, visibility: Any, probability: Any, result: xr.Dataset) ->
 
 def _map(panel: Any, mu: FloatArray, B: FloatArray, values: Any, **options: Any) -> Any:
     panel.set(xlabel="$B$ [T]", ylabel=r"$\mu$ [meV]")
+    if mu.size == 1:
+        panel.set_yticks(mu)
+    if B.size == 1:
+        panel.set_xticks(B)
     edges = _edges(B), _edges(mu)
     return panel.pcolormesh(*edges, values, rasterized=True, **options)
 
