@@ -70,6 +70,7 @@ top.legend(frameon=False)
 bottom.plot(1e3 * (inferred["potential"] - true).T, "C0", lw=0.3, alpha=0.5)
 bottom.axhline(0, color="k", lw=0.5)
 bottom.set(xlabel="site", ylabel="members − true [µeV]")
+
 # %% [markdown]
 # ## Where is it topological?
 #

@@ -17,12 +17,12 @@ from disorder_landscape.inference.inversion import (
     Told,
     best,
     invert,
+    usual_settings,
     verdict,
     word_heard,
 )
 from disorder_landscape.inference.measurement import Measurement, measurement_of, settings_of
 from disorder_landscape.inference.observation import Observation, noise_of_channels, stated_noise
-from disorder_landscape.inference.rounds import WITH_WORD
 from disorder_landscape.inference.unknowns import Unknowns
 from disorder_landscape.learning.model import (
     TrainedModel,
@@ -112,12 +112,13 @@ def infer(
         trained = model if isinstance(model, TrainedModel) else load_model(model)
     observation = Observation(measurement, Unknowns(config), errors)
     start = "the prior" if trained is None else "the network's guess"
-    if word_heard(trained, observation) is not None:
+    word = word_heard(trained, observation)
+    if word is not None:
         start = "the prior, with the network's word on each wire"
     if network and not whole:
         start += ", because the network needs all conductances and some are missing"
-    usual = settings or (InversionSettings(), WITH_WORD)
-    fingerprint = repr((whole_config, errors.tolist(), seed, usual, start)).encode()
+    settings = settings or usual_settings(word)
+    fingerprint = repr((whole_config, errors.tolist(), seed, settings, start)).encode()
     fingerprint += b"".join(np.asarray(value).tobytes() for value in vars(measurement).values())
     notes = Checkpoint(checkpoint, fingerprint)
     attempts = invert(observation, trained, seed, settings, told, notes)

@@ -132,8 +132,7 @@ def invert(
     """
     recall = (checkpoint if checkpoint is not None else Checkpoint()).recall
     word = word_heard(model, observation)
-    if settings is None:
-        settings = InversionSettings(RoundSettings() if word is None else WITH_WORD)
+    settings = settings or usual_settings(word)
     attempts: list[Attempt] = []
     prior, guess = observation.unknowns.prior, None
     if model is not None and word is None:
@@ -157,6 +156,11 @@ def invert(
         if verdict(observation, outcome) != NOT_CONVERGED:
             break
     return outcome
+
+
+def usual_settings(word: Word | None) -> InversionSettings:
+    """Return how an inversion goes about it that hears a network's word on each wire, or none."""
+    return InversionSettings(RoundSettings() if word is None else WITH_WORD)
 
 
 def word_heard(model: TrainedModel | None, observation: Observation) -> Word | None:

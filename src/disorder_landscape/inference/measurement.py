@@ -84,8 +84,7 @@ def measurement_of(
         G_LL … G_RL in e²/h, dims (mu, B, bias) in any order, and the attributes SETTINGS, as
         `conductance` returns them.
     usual : mapping, optional
-        Settings where the attributes are missing, and what is stated of the wire must be, if it is
-        otherwise than `Nanowire`'s own.
+        Settings where the attributes are missing.
     complete : bool
         Whether each conductance must be there and finite; otherwise one number is enough, and what
         is missing is NaN.
@@ -94,7 +93,7 @@ def measurement_of(
     ------
     ArgumentError
         If it lacks a variable, a dim or an attribute, has several wires, holds NaN or infinity, is
-        in siemens, or states that the wire is another than the models'.
+        in other units, or states that the wire is another than the models'.
     """
     there = isinstance(dataset, xr.Dataset)
     require(there, "measurement", "be a Dataset", f"it is {type(dataset).__name__!r}")

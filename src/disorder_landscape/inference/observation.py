@@ -124,12 +124,16 @@ def objective(observation: Observation, X: FloatArray, Y: FloatArray) -> FloatAr
 
 def stated_noise(attrs: Mapping[Any, Any]) -> float | dict[str, float]:
     """Return the noise that a measurement states: one number, one of each channel, or the usual."""
-    noise = np.atleast_1d(attrs.get("noise", NOISE_FLOOR))
-    if noise.size == len(CONDUCTANCES):
-        return dict(zip(CONDUCTANCES, noise.tolist(), strict=True))
+    noise = np.atleast_1d(attrs.get("noise", NOISE_FLOOR)).tolist()
     must = f"be one number in e²/h, or one for each of {', '.join(CONDUCTANCES)}"
-    require(noise.size == 1, "noise", must, f"the measurement states {noise.size}")
-    return number_in("noise", noise[0], 0.0, 1.0, "e²/h")
+    there = len(noise) in (1, len(CONDUCTANCES))
+    require(there, "noise", must, f"the measurement states {len(noise)}")
+    return one_or_each(noise)
+
+
+def one_or_each(noise: list[float]) -> float | dict[str, float]:
+    """Return what a list of one number, or of one for each channel, stands for."""
+    return noise[0] if len(noise) == 1 else dict(zip(CONDUCTANCES, noise, strict=True))
 
 
 def noise_of_channels(noise: float | Mapping[str, float]) -> FloatArray:

@@ -11,7 +11,7 @@ import xarray as xr
 from disorder_landscape.files import replacing
 from disorder_landscape.inference.inversion import CONVERGED
 from disorder_landscape.inference.measurement import Measurement
-from disorder_landscape.inference.report import alpha_with_deviation
+from disorder_landscape.inference.report import alpha_with_deviation, error_bar
 from disorder_landscape.physics.labels import CONDUCTANCES
 from disorder_landscape.physics.parameters import FloatArray
 
@@ -19,6 +19,8 @@ FIGURE_SIZE = 7.06, 7.2
 """In inches; the width is that of a page of the paper's journal."""
 INTERVALS = (5, 95), (25, 75)
 """Percentiles of the members between which V is shaded."""
+APART = np.array([-0.25, 0.25])
+"""Where the pixels of a map are that has one value of µ or B alone."""
 
 
 def plot_inference(result: xr.Dataset, measurement: Measurement, path: Path) -> None:
@@ -85,8 +87,8 @@ def _deviation(panel: Any, result: xr.Dataset) -> None:
         label = f"{high - low} % of the members"
         panel.fill_between(site, *between, color="C0", alpha=alpha, lw=0, label=label)
     panel.set(xlabel="site", ylabel="off [µeV]", xlim=(site[0], site[-1]))
-    deviation = 1e3 * float(np.sqrt((result["potential_deviation"] ** 2).mean()))
-    panel.set_title(f"members minus mean; error bar of V: {deviation:.2g} µeV, root mean square")
+    bar = f"error bar of V: {error_bar(result):.2g} µeV, root mean square"
+    panel.set_title(f"members minus mean; {bar}")
     low, high = panel.get_ylim()
     panel.set_ylim(low, high + 0.5 * (high - low))  # room for the legend
     panel.legend(ncols=2, frameon=False, loc="upper center")
@@ -126,11 +128,11 @@ def _conductances(
     local = name in ("G_LL", "G_RR")
     norm = {"vmin": 0 if local else -largest, "vmax": largest}
     norm["cmap"] = "viridis" if local else "RdBu_r"
-    for panel, values, title in ((measured, G, "measured"), (explained, answer, "explained")):
+    channel_name, bias = rf"$G_\mathrm{{{name[2:]}}}$", f"{measurement.bias[at]:g} meV"
+    titles = f"{channel_name}, {bias}: measured", f"{channel_name} explained"
+    for panel, values, title in zip((measured, explained), (G, answer), titles, strict=True):
         image = _map(panel, measurement.mu, measurement.B, values, **norm)
-        panel.set_title(rf"$G_\mathrm{{{name[2:]}}}$ {title}")
-    bias = measurement.bias[at]
-    measured.set_title(rf"$G_\mathrm{{{name[2:]}}}$, {bias:g} meV: measured")
+        panel.set_title(title)
     explained.set_ylabel("")
     figure.colorbar(image, ax=[measured, explained], label="$e^2/h$", location="bottom", aspect=30)
 
@@ -148,17 +150,10 @@ def _maps(figure: Any, visibility: Any, probability: Any, result: xr.Dataset) ->
 
 def _map(panel: Any, mu: FloatArray, B: FloatArray, values: Any, **options: Any) -> Any:
     panel.set(xlabel="$B$ [T]", ylabel=r"$\mu$ [meV]")
-    if mu.size == 1:
+    if mu.size == 1:  # as wide as the panel
         panel.set_yticks(mu)
+        mu, values = mu + APART, np.ma.repeat(values, 2, axis=0)
     if B.size == 1:
         panel.set_xticks(B)
-    edges = _edges(B), _edges(mu)
-    return panel.pcolormesh(*edges, values, rasterized=True, **options)
-
-
-def _edges(axis: FloatArray) -> FloatArray:
-    """Return where the pixels of a map begin and end; one alone is as wide as the panel."""
-    if axis.size == 1:
-        return np.array([axis[0] - 0.5, axis[0] + 0.5])
-    middle = (axis[1:] + axis[:-1]) / 2
-    return np.concatenate([[2 * axis[0] - middle[0]], middle, [2 * axis[-1] - middle[-1]]])
+        B, values = B + APART, np.ma.repeat(values, 2, axis=1)
+    return panel.pcolormesh(B, mu, values, shading="nearest", rasterized=True, **options)

@@ -83,8 +83,13 @@ def polish(
             break
         slope = linearise(observation, replace(linear, mean=x))[1]
         damping = 0.0 if damping <= first else damping / factor
+    return laplace(observation, x, slope)
+
+
+def laplace(observation: Observation, mean: FloatArray, slope: FloatArray) -> Gaussian:
+    """Return what the posterior about an optimum would be if data were linear."""
     covariance = np.linalg.inv(precision_of(observation, slope))
-    return Gaussian(x, (covariance + covariance.T) / 2)
+    return Gaussian(mean, (covariance + covariance.T) / 2)
 
 
 def precision_of(observation: Observation, slope: FloatArray) -> FloatArray:

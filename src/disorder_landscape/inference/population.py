@@ -113,10 +113,11 @@ def population(
         shown = recall(name, partial(_shown, observation, new))
         X, height = np.concatenate([X, new]), np.append(height, shown["height"])
         found = tamed(X, -0.5 * height - log_mixture(drawn, X), LEAST_SHARE * count)
-        told(number, shown["misfit"], unknowns.site_deviation(found.moments.covariance))
+        moments = found.moments
+        told(number, shown["misfit"], unknowns.site_deviation(moments.covariance))
         if found.is_enough:
             break
-        proposals = [Gaussian(found.moments.mean, WIDER**2 * found.moments.covariance)]
+        proposals = [Gaussian(moments.mean, WIDER**2 * moments.covariance)]
     return found
 
 

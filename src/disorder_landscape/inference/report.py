@@ -8,7 +8,7 @@ import xarray as xr
 from disorder_landscape.arguments import numbers_of
 from disorder_landscape.config import TrainingConfig
 from disorder_landscape.inference.inversion import CONVERGED
-from disorder_landscape.inference.observation import noise_of_channels
+from disorder_landscape.inference.observation import noise_of_channels, one_or_each
 from disorder_landscape.learning.scaling import NOISE_FLOOR
 from disorder_landscape.physics.labels import CONDUCTANCES
 from disorder_landscape.physics.parameters import FloatArray
@@ -33,7 +33,7 @@ def parse_noise(text: str) -> float | dict[str, float]:
     """
     must = f"be a number in e²/h, or one for each of {', '.join(CONDUCTANCES)}"
     values = numbers_of("noise", text, (1, len(CONDUCTANCES)), must)
-    return values[0] if len(values) == 1 else dict(zip(CONDUCTANCES, values, strict=True))
+    return one_or_each(values)
 
 
 def noise_hint(training: TrainingConfig, noise: float | dict[str, float]) -> str:
@@ -77,15 +77,19 @@ def alpha_with_deviation(alpha: xr.DataArray) -> str:
     return f"{mean:.5g} {said}"
 
 
+def error_bar(result: xr.Dataset) -> float:
+    """Return that of V in µeV, root mean square over the sites."""
+    return 1e3 * float(np.sqrt((result["potential_deviation"] ** 2).mean()))
+
+
 def summary(result: xr.Dataset) -> list[str]:
     """Return the lines that tell what `infer` has found."""
-    deviation = float(np.sqrt((result["potential_deviation"] ** 2).mean()))
     attrs = result.attrs
     lines = [
         f"verdict         {attrs['verdict']}",
         f"from            {attrs['start']}",
         f"attempts        {attrs['attempts']}, rounds: {attrs['rounds']}",
-        f"error bar of V  {1e3 * deviation:.3g} µeV, root mean square over the sites",
+        f"error bar of V  {error_bar(result):.3g} µeV, root mean square over the sites",
         f"alpha           {alpha_with_deviation(result['alpha'])}",
     ]
     if attrs["verdict"] != CONVERGED:

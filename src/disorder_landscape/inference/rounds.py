@@ -28,7 +28,7 @@ import numpy as np
 
 from disorder_landscape.inference.members import Members
 from disorder_landscape.inference.observation import Observation, overall_misfit
-from disorder_landscape.inference.polish import linearise, precision_of
+from disorder_landscape.inference.polish import laplace, linearise
 from disorder_landscape.inference.regression import learn, variance_about_lines
 from disorder_landscape.inference.unknowns import Gaussian
 from disorder_landscape.inference.word import Word
@@ -129,18 +129,19 @@ def rounds(
         Of a network, to regress on besides the data; these are then those on its grid.
     """
     least, narrowest, since = np.inf, np.inf, 0
+    key = ".".join(map(str, seed))
     share, distribution = settings.share, start
     count = max(settings.least_members, round(settings.members_per_unknown * start.mean.size))
     members = _members(observation, share, seed, settings, word)
     for number in range(settings.rounds):
         members.draw(distribution, count, np.random.default_rng([*seed, number, 1]))
         make = partial(_round, members, distribution, settings)
-        one = Round.from_dict(recall(f"round.{'.'.join(map(str, seed))}.{number}", make))
+        one = Round.from_dict(recall(f"round.{key}.{number}", make))
         yield one
         straight = one.unexplained < settings.unexplained
         if straight and share == 1:
             make = partial(_gauss_newton, observation, one)
-            step = recall(f"near.{'.'.join(map(str, seed))}.{number}", make)
+            step = recall(f"near.{key}.{number}", make)
             if one.spread < settings.near * step["spread"]:
                 return
         narrower = one.spread < settings.narrower * narrowest
@@ -159,8 +160,8 @@ def rounds(
 def _gauss_newton(observation: Observation, one: Round) -> dict[str, Any]:
     """Return the `spread` in meV that a Gauss–Newton step from a round's answer ends with."""
     slope = linearise(observation, one.distribution)[1]
-    covariance = np.asarray(np.linalg.inv(precision_of(observation, slope)), np.float64)
-    return {"spread": observation.unknowns.site_deviation(covariance)}
+    step = laplace(observation, one.distribution.mean, slope)
+    return {"spread": observation.unknowns.site_deviation(step.covariance)}
 
 
 def _members(
