@@ -336,14 +336,13 @@ def test_the_chain_has_the_posteriors_moments(linear):
 def test_further_data_are_the_answers_or_not(linear):
     """The p-value is uniform for data that members of the answer make, and small for others."""
     exact, rng = posterior(linear), np.random.default_rng(7)
-    slope = rng.normal(size=linear.slope.shape)
+    slope, variance = rng.normal(size=linear.slope.shape), np.full(40, 0.01**2)
     p = []
     for member in exact.draw(rng, 60):
-        further = Linear(member @ slope + 0.01 * rng.normal(size=40), slope)
-        p.append(predictive_p(further, exact, rng))
+        data = member @ slope + 0.01 * rng.normal(size=40)
+        p.append(predictive_p(exact.draw(rng, 100) @ slope, data, variance, rng))
     assert kstest(p, "uniform").pvalue > 0.01
-    shifted = Linear(further.data + 0.02, slope)
-    assert predictive_p(shifted, exact, rng) < 0.02
+    assert predictive_p(exact.draw(rng, 100) @ slope, data + 0.02, variance, rng) < 0.02
 
 
 def test_the_prior_is_the_disorder_models():

@@ -198,14 +198,35 @@ def test_a_wire_of_another_length_is_a_prediction_like_any_other():
     assert verify(prediction_of(other), measure(TRUE))["p_value"] > 0.05
 
 
-def test_what_an_inversion_has_found_is_judged_by_its_mean():
-    one = prediction_of(TRUE, shift=TRUE.potential.mean())
-    apart = 1e-4 * np.array([-1.0, 0.0, 1.0])
-    potential = one["potential"] + xr.DataArray(apart, dims="member")
-    found = one.assign(
-        potential=potential.transpose("member", "site"),
-        potential_mean=potential.mean("member"),
-        alpha=TRUE.alpha + xr.DataArray(apart, dims="member"),
+def inversion_of(wire, apart):
+    """What `infer` would return: members whose V and α are off by these."""
+    one = prediction_of(wire, shift=wire.potential.mean())
+    off = xr.DataArray(apart, dims="member")
+    return one.assign(
+        potential=(one["potential"] + off).transpose("member", "site"),
+        potential_mean=one["potential"],
+        alpha=wire.alpha + off,
     )
+
+
+def test_what_an_inversion_has_found_is_judged_by_its_mean():
+    found = inversion_of(TRUE, 1e-4 * np.array([-1.0, 0.0, 1.0]))
     measured = measure(TRUE, barrier=(12.0, 30.0))
     assert verify(found, measured, shifts=[0.0])["mismatch"].max() < 1e-9
+
+
+@pytest.mark.parametrize("barrier", [(15.0, 15.0), (12.0, 30.0)])
+def test_members_of_an_inversion_make_the_data_or_not(barrier):
+    """Error bars in meV that hold the truth, and others that do not, as the verdict says."""
+    noise, bar = 0.01, 1e-3
+    apart = bar * np.random.default_rng(3).normal(size=60)
+    measured = measure(TRUE, barrier=barrier, noise=noise)
+    options = {"noise": noise, "shifts": [0.0]}
+    right = verify(inversion_of(TRUE, apart), measured, **options)
+    assert right["p_members"] > 0.05
+    shifted = replace(TRUE, potential=TRUE.potential + 20 * bar)
+    wrong = verify(inversion_of(shifted, apart), measured, **options)
+    assert wrong["p_members"] < 0.02
+    assert wrong["p_value"] < 0.06  # far better than wrong disorder, even so
+    for result, says in ((right, "make such data"), (wrong, "do not make such data")):
+        assert says in table(result.assign_coords(measurement=["a"]))[-1]

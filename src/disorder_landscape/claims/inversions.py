@@ -11,9 +11,10 @@ from scipy.stats import norm
 from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.table import markdown
 from disorder_landscape.inference.inversion import CONVERGED
+from disorder_landscape.inference.verdict import UNLIKELY
 from disorder_landscape.physics.parameters import FloatArray
 from disorder_landscape.studies.inversions import wrong
-from disorder_landscape.studies.unmodelled import KINDS, UNLIKELY
+from disorder_landscape.studies.unmodelled import KINDS
 
 INVERSIONS = REPOSITORY / "claims" / "inversions.csv"
 COMPONENTS = REPOSITORY / "claims" / "components.csv"

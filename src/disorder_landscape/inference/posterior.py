@@ -20,8 +20,6 @@ WIDER = 1.15
 """Proposals are this much wider than the answer, so that its tails are proposed."""
 AT_A_TIME = 64
 """Members that are simulated at a time."""
-REPLICATES = 100
-"""Data sets with which further data are compared."""
 
 
 class Chain(NamedTuple):
@@ -60,23 +58,24 @@ def independence_chain(
     return Chain(chain, taken / length)
 
 
-def predictive_p(further: Observation, answer: Gaussian, rng: np.random.Generator) -> float:
+def predictive_p(
+    Y: FloatArray, data: FloatArray, variance: FloatArray, rng: np.random.Generator
+) -> float:
     """Return how likely an answer makes further data as unlike its prediction as these or more.
 
     The posterior predictive p-value of χ² (Gelman, Meng and Stern, Stat. Sinica 6, 733 (1996)):
-    members of the answer are simulated at the new settings and given errors, and the data are
-    counted among them. What the members do not agree on weighs less.
+    what members of the answer show at the new settings is given errors, and the data are counted
+    among them. What the members do not agree on weighs less.
 
     Parameters
     ----------
-    further : Observation
-        Data that the inversion has not seen, K'_full of S-II.1.
-    answer : Gaussian
+    Y : array, shape (member, datum)
+        What members of the answer show.
+    data, variance : array, shape (datum,)
+        Which the inversion has not seen, K'_full of S-II.1, and the variance of their errors.
     rng : Generator
     """
-    Y = further.simulate(answer.draw(rng, REPLICATES))
-    deviation = np.sqrt(further.variance)
-    mean, variance = Y.mean(axis=0), Y.var(axis=0, ddof=1) + further.variance
-    replicates = Y + deviation * rng.normal(size=Y.shape)
-    chi_square = ((np.vstack([further.data, replicates]) - mean) ** 2 / variance).sum(axis=1)
+    replicates = Y + np.sqrt(variance) * rng.normal(size=Y.shape)
+    mean, both = Y.mean(axis=0), Y.var(axis=0, ddof=1) + variance
+    chi_square = ((np.vstack([data, replicates]) - mean) ** 2 / both).sum(axis=1)
     return float((chi_square >= chi_square[0]).mean())

@@ -10,6 +10,8 @@ from disorder_landscape.physics.parameters import FloatArray
 
 SIGNIFICANCE = 0.05
 """Largest p-value of a prediction that passes."""
+UNLIKELY = 0.02
+"""Further data are no longer an inversion's if its members make such with no more probability."""
 LEAST_SIGNAL = 0.5
 """Part of the mismatch of wrong disorder that must not be noise in one channel at least."""
 _TINY = np.finfo(float).tiny
@@ -75,6 +77,12 @@ def _verdict(score: float, as_close: int, controls: int, p: float) -> str:
     )
 
 
+def of_members(p: float) -> str:
+    """Return what the p-value of an inversion's members says of further data (`predictive_p`)."""
+    but = "Members of the inversion do not make such data: its error bars or its model are wrong"
+    return f"{'Members of the inversion make such data' if p > UNLIKELY else but} (p = {p:.2g})."
+
+
 def table(result: xr.Dataset) -> list[str]:
     """Return the lines of a table of what `verify` has found, in e²/h, and its verdict."""
     lines = [
@@ -90,4 +98,7 @@ def table(result: xr.Dataset) -> list[str]:
             )
     shift = 1e3 * float(result["shift"])
     lines.append(f"mean of V that fits best: {shift:g} µeV; noise: {result.attrs['noise']:g} e²/h")
-    return [*lines, str(result.attrs["verdict"])]
+    lines.append(str(result.attrs["verdict"]))
+    if "p_members" in result:
+        lines.append(of_members(float(result["p_members"])))
+    return lines

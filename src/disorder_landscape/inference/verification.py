@@ -4,7 +4,8 @@
 measurements": at other μ, B, bias, barriers or angle θ of the field. The predicted wire is
 simulated at those settings and compared with the measurement, and so are wires with random
 disorder of the same model, the controls. A prediction that explains no more than they do is wrong,
-or the model is.
+or the model is. Members of an inversion say more: whether the measurements are among those that
+they make.
 
 The mean of V is none of the paper's labels (S-II.1: it has a standard deviation of 0.01 meV), so
 that a prediction may lack it. It acts as a shift of μ, which an experiment would calibrate, and
@@ -24,7 +25,9 @@ from numpy.typing import ArrayLike
 
 from disorder_landscape.arguments import grid_in, number_in, require, whole_number_in
 from disorder_landscape.config import DatasetConfig
-from disorder_landscape.inference.measurement import Measurement, measurement_of
+from disorder_landscape.inference.measurement import Measurement, measurement_of, simulated
+from disorder_landscape.inference.observation import SOLVER_ERROR
+from disorder_landscape.inference.posterior import predictive_p
 from disorder_landscape.inference.verdict import SIGNIFICANCE, comparison, scores
 from disorder_landscape.physics.disorder import MEAN_STD, disorder_realization
 from disorder_landscape.physics.labels import CONDUCTANCES
@@ -81,7 +84,8 @@ def verify(
         the median of the second; score and control_score (control), the ratios' root mean square
         over measurements and channels; shift and control_shift (control) in meV; p_value, the
         chance that wrong disorder scores as well; the sentence verdict as attribute. Channels in
-        which wrong disorder differs by no more than the noise have no weight in the scores.
+        which wrong disorder differs by no more than the noise have no weight in the scores. Of an
+        inversion, p_members: how likely its members make data as unlike their prediction as these.
 
     Raises
     ------
@@ -100,12 +104,35 @@ def verify(
     model = _disorder_model(prediction, predicted, config)
     wires = [predicted, *control_wires(model, controls, seed)]
     squares, shift = _mean_squares(wires, measured, tried, noise, progress)
-    return comparison(np.sqrt(squares), shift, noise)
+    result = comparison(np.sqrt(squares), shift, noise)
+    if _is_inversion(prediction):
+        p = _p_of_members(prediction, measured, noise, np.random.default_rng([seed, 2]))
+        result["p_members"] = ((), p, {"units": "1"})
+    return result
+
+
+def _is_inversion(prediction: xr.Dataset) -> bool:
+    return isinstance(prediction, xr.Dataset) and "potential_mean" in prediction.variables
+
+
+def _p_of_members(
+    prediction: xr.Dataset, measured: Sequence[Measurement], noise: float, rng: np.random.Generator
+) -> float:
+    """Return `predictive_p` of an inversion's members, which know the mean of V."""
+    potential = prediction["potential"].transpose("member", "site").to_numpy()
+    members = list(zip(potential, prediction["alpha"].to_numpy(), strict=True))
+    shown = []
+    for m in measured:
+        wires = [Nanowire(V, alpha=float(alpha), barrier=m.barrier) for V, alpha in members]
+        shown.append(simulated(wires, m).reshape(len(wires), -1))
+    data = np.concatenate([m.G.ravel() for m in measured])
+    variance = np.full(data.size, noise**2 + SOLVER_ERROR**2)
+    return predictive_p(np.concatenate(shown, axis=1), data, variance, rng)
 
 
 def _predicted_wire(prediction: xr.Dataset) -> Nanowire:
     must = "hold the potential and alpha of one wire, as `landscape predict` writes them"
-    if isinstance(prediction, xr.Dataset) and "potential_mean" in prediction.variables:
+    if _is_inversion(prediction):
         mean = {"potential": prediction["potential_mean"], "alpha": prediction["alpha"].mean()}
         prediction = xr.Dataset(mean)  # of the members that `infer` has found
     for name, dims in (("potential", ("site",)), ("alpha", ())):

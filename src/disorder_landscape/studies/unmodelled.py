@@ -42,8 +42,8 @@ EVERY = 2
 CONTROLS = 19
 SHIFTS = np.linspace(-0.03, 0.03, 7)
 """With how many wires of wrong disorder they are compared, and which means of V are tried."""
-UNLIKELY = 0.01
-"""Further data are no longer the answer's if it makes such with less than this probability."""
+MEMBERS = 100
+"""Of the answer, which predict those measurements."""
 KEYS = ["model", "noise", "kind", "index"]
 
 
@@ -118,6 +118,7 @@ def unmodelled_row(task: Task) -> dict[str, object]:
         measured(other_settings, other_G, task.noise, task.index, 3), unknowns, noise
     )
     rng = np.random.default_rng([SEED, task.index, 4])
+    predicted = further.simulate(found.answer.draw(rng, MEMBERS))
     return rounded(
         {
             "model": task.model,
@@ -128,7 +129,7 @@ def unmodelled_row(task: Task) -> dict[str, object]:
             "site_error": float(np.sqrt(((unknowns.potential(mean) - true.potential) ** 2).mean())),
             "alpha_error": abs(unknowns.alpha(mean) - one.alpha),
             "p_controls": _p_of_controls(unknowns, mean, further, task),
-            "p_predictive": predictive_p(further, found.answer, rng),
+            "p_predictive": predictive_p(predicted, further.data, further.variance, rng),
             **found.outcome,
         }
     )
