@@ -21,7 +21,7 @@ from tqdm import tqdm
 from command import Request, figure_script
 from disorder_landscape import Nanowire, conductance, verify
 from disorder_landscape.config import Config
-from disorder_landscape.inference.verdict import scores
+from disorder_landscape.inference.comparison import scores
 from disorder_landscape.inference.verification import control_wires
 from disorder_landscape.physics.disorder import MEAN_STD
 from disorder_landscape.physics.labels import CONDUCTANCES

@@ -23,7 +23,7 @@ from matplotlib.figure import Figure
 from command import Request, figure_script
 from disorder_landscape.chain import FIVE, TEN
 from disorder_landscape.claims.inversions import INVERSIONS, UNIQUENESS
-from disorder_landscape.inference.inversion import CONVERGED
+from disorder_landscape.inference.verdict import CONVERGED
 from plotting import FULL_WIDTH, INPUT, PREDICTION, inches
 
 NAMES = {FIVE: "5 components and α", TEN: "10 components"}

@@ -46,6 +46,13 @@ def resumable() -> Iterator[None]:
         raise typer.Exit(130) from None
 
 
+def made_here() -> dict[str, str]:
+    """Return the provenance of what this command line makes."""
+    from disorder_landscape.dataset.store import provenance
+
+    return provenance(" ".join(["landscape", *sys.argv[1:]]))
+
+
 @app.command()
 def simulate(
     potential: Annotated[
@@ -87,7 +94,7 @@ def simulate(
     from tqdm import tqdm
 
     from disorder_landscape import simulation
-    from disorder_landscape.dataset.store import provenance, write_dataset
+    from disorder_landscape.dataset.store import write_dataset
     from disorder_landscape.files import check_netcdf, check_writable
     from disorder_landscape.physics.disorder import disorder_realization
     from disorder_landscape.physics.parameters import Nanowire
@@ -121,7 +128,7 @@ def simulate(
             bar.update(done)
 
         result = simulation.simulate_wire(wire, grids, temperature, solver, angle, progress)
-    write_dataset(result, output, provenance(" ".join(["landscape", *sys.argv[1:]])))
+    write_dataset(result, output, made_here())
     if plot is not None:
         simulation.plot_simulation(result, plot)
     print(f"wrote {output}" + (f" and {plot}" if plot else ""))
@@ -206,7 +213,7 @@ def predict(
 
     Example: landscape predict wire.nc --model data_small/models/five_components_and_alpha -o Y.nc
     """
-    from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
+    from disorder_landscape.dataset.store import read_dataset, write_dataset
     from disorder_landscape.files import check_netcdf
     from disorder_landscape.learning.prediction import predict as predict_labels
     from disorder_landscape.physics.labels import CONDUCTANCES
@@ -215,7 +222,7 @@ def predict(
     same = output.resolve() == measurement.resolve()
     require(not same, "output", "be another file than the measurement", f"both are '{output}'")
     Y = predict_labels(model, read_dataset(measurement, CONDUCTANCES)[list(CONDUCTANCES)])
-    write_dataset(Y, output, provenance(" ".join(["landscape", *sys.argv[1:]])))
+    write_dataset(Y, output, made_here())
     print(f"wrote {output}")
 
 
@@ -247,7 +254,7 @@ def infer(
     Example: landscape infer wire.nc --model data_small/models/five_components_and_alpha_noisy
     --noise 0.01 -o inferred.nc --plot inferred.png
     """
-    from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
+    from disorder_landscape.dataset.store import read_dataset, write_dataset
     from disorder_landscape.files import check_netcdf, check_writable
     from disorder_landscape.inference.infer import infer as find
     from disorder_landscape.inference.measurement import measurement_of
@@ -274,7 +281,7 @@ def infer(
         result = find(
             measured, model, errors, not from_prior, members, seed, None, unfinished, told
         )
-    attrs = provenance(" ".join(["landscape", *sys.argv[1:]]))
+    attrs = made_here()
     write_dataset(result, output, attrs, may_lack=["misfit"])  # of channels without data
     unfinished.unlink(missing_ok=True)
     if plot is not None:
@@ -316,9 +323,9 @@ def verify(
     """
     from tqdm import tqdm
 
-    from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
+    from disorder_landscape.dataset.store import read_dataset, write_dataset
     from disorder_landscape.files import check_netcdf
-    from disorder_landscape.inference.verdict import table
+    from disorder_landscape.inference.comparison import table
     from disorder_landscape.inference.verification import verify as compare
     from disorder_landscape.learning.model import load_model_config
     from disorder_landscape.physics.labels import CONDUCTANCES
@@ -342,7 +349,7 @@ def verify(
         result = compare(predicted, measured, noise, controls, seed, config, tried, progress)
     result = result.assign_coords(measurement=[str(path) for path in measurements])
     if output is not None:
-        write_dataset(result, output, provenance(" ".join(["landscape", *sys.argv[1:]])))
+        write_dataset(result, output, made_here())
     print("\n".join(table(result)))
     if output is not None:
         print(f"wrote {output}")

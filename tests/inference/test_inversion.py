@@ -12,12 +12,7 @@ from disorder_landscape.chain import FIVE, shipped_model
 from disorder_landscape.config import Config, DatasetConfig, TrainingConfig
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.inference.first_guess import network_guess
-from disorder_landscape.inference.inversion import (
-    CONVERGED,
-    NOT_CONVERGED,
-    NOT_DESCRIBED,
-    InversionSettings,
-)
+from disorder_landscape.inference.inversion import InversionSettings
 from disorder_landscape.inference.measurement import measurement_of, settings_of
 from disorder_landscape.inference.observation import Observation, noise_of_channels, stated_noise
 from disorder_landscape.inference.report import (
@@ -28,6 +23,7 @@ from disorder_landscape.inference.report import (
 )
 from disorder_landscape.inference.rounds import RoundSettings
 from disorder_landscape.inference.unknowns import Unknowns
+from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED, NOT_DESCRIBED
 from disorder_landscape.inference.word import word_on
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.learning.scaling import LabelScaler

@@ -1,65 +1,35 @@
 """Members of posteriors that are known: of lines, and of two valleys."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from disorder_landscape.config import DatasetConfig
+from disorder_landscape.inference.attempt import Attempt
 from disorder_landscape.inference.checkpoint import Checkpoint
-from disorder_landscape.inference.inversion import (
-    CONVERGED,
-    NOT_CONVERGED,
-    Attempt,
-    judged,
-    verdict,
-)
+from disorder_landscape.inference.inversion import judged
 from disorder_landscape.inference.population import WORTH, Population, population, tamed
-from disorder_landscape.inference.unknowns import Gaussian, Unknowns
+from disorder_landscape.inference.unknowns import Gaussian
+from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED, verdict
+from linear_data import DATA, SIZE, UNKNOWNS, Linear, posterior
 
-UNKNOWNS = Unknowns(DatasetConfig(realizations=1, components=3, sites=50))
-SIZE = len(UNKNOWNS.names)
 PRIOR = UNKNOWNS.prior
+WIDTH = np.sqrt(np.diag(PRIOR.covariance))
 RNG = np.random.default_rng(5)
-SLOPE = RNG.normal(size=(SIZE, 40)) / np.sqrt(np.diag(PRIOR.covariance))[:, None]
+SLOPE = RNG.normal(size=(SIZE, DATA)) / WIDTH[:, None]
+ONE = np.ones(DATA)
 
 
-@dataclass(frozen=True)
-class Measured:
-    temperature: float = 0.05
-
-
-@dataclass(frozen=True)
-class Lines:
-    """Data that are linear in the unknowns."""
-
-    data: np.ndarray
-    unknowns: Unknowns = UNKNOWNS
-    variance: np.ndarray = field(default_factory=lambda: np.full(40, 1.0))
-    channel: np.ndarray = field(default_factory=lambda: np.zeros(40, dtype=int))
-    measurement: Measured = Measured()
-
-    def simulate(self, X):
-        return (X - PRIOR.mean) @ SLOPE
-
-
-class Folds(Lines):
+class Folds(Linear):
     """Data that do not tell on which side of the prior's mean the unknowns are."""
 
     def simulate(self, X):
-        return super().simulate(X) ** 2
-
-
-def posterior(lines):
-    """Bayes' theorem for linear data."""
-    weighted = SLOPE / lines.variance
-    covariance = np.linalg.inv(weighted @ SLOPE.T + np.linalg.inv(PRIOR.covariance))
-    return Gaussian(PRIOR.mean + covariance @ (weighted @ lines.data), covariance)
+        return super().simulate(X - PRIOR.mean) ** 2
 
 
 @pytest.fixture(scope="module")
 def lines():
-    return Lines(RNG.normal(size=SIZE) @ (SLOPE * np.sqrt(np.diag(PRIOR.covariance))[:, None]))
+    return Linear((PRIOR.mean + RNG.normal(size=SIZE) * WIDTH) @ SLOPE, SLOPE, variance=ONE)
 
 
 def test_members_have_the_posteriors_moments(lines):
@@ -77,8 +47,8 @@ def test_members_have_the_posteriors_moments(lines):
 
 
 def test_both_valleys_have_their_share():
-    truth = PRIOR.mean + 1.5 * np.sqrt(np.diag(PRIOR.covariance))
-    folds = Folds(((truth - PRIOR.mean) @ SLOPE) ** 2, variance=np.full(40, 4.0))
+    truth = PRIOR.mean + 1.5 * WIDTH
+    folds = Folds(((truth - PRIOR.mean) @ SLOPE) ** 2, SLOPE, variance=4 * ONE)
     about = [Gaussian(at, 0.05 * PRIOR.covariance) for at in (truth, 2 * PRIOR.mean - truth)]
     found = population(folds, about, [0])
     side = (found.members - PRIOR.mean) @ (truth - PRIOR.mean) > 0
@@ -126,9 +96,9 @@ def test_an_interrupted_population_goes_on(lines, tmp_path):
     def fail(X):
         raise AssertionError("simulated twice")
 
-    object.__setattr__(lines, "simulate", fail)
-    second = population(lines, [start], [0], again.recall)
-    object.__delattr__(lines, "simulate")
+    unavailable = replace(lines)
+    unavailable.simulate = fail
+    second = population(unavailable, [start], [0], again.recall)
     np.testing.assert_array_equal(first.weight, second.weight)
     np.testing.assert_array_equal(first.members, second.members)
 

@@ -1,22 +1,13 @@
 """Rounds, polish and Markov chain on problems whose posterior is known."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.stats import kstest, multivariate_normal
 
-from disorder_landscape.config import DatasetConfig
+from disorder_landscape.inference.attempt import Attempt, chi_square_excess
 from disorder_landscape.inference.checkpoint import Checkpoint
-from disorder_landscape.inference.inversion import (
-    CONVERGED,
-    NOT_CONVERGED,
-    NOT_DESCRIBED,
-    Attempt,
-    chi_square_excess,
-    same_answer,
-    verdict,
-)
 from disorder_landscape.inference.members import Members, log_density
 from disorder_landscape.inference.observation import Observation, noise_of_channels
 from disorder_landscape.inference.polish import linearise, polish, precision_of
@@ -29,32 +20,18 @@ from disorder_landscape.inference.regression import (
 )
 from disorder_landscape.inference.rounds import Round, RoundSettings, rounds
 from disorder_landscape.inference.unknowns import Gaussian, Unknowns
+from disorder_landscape.inference.verdict import (
+    CONVERGED,
+    NOT_CONVERGED,
+    NOT_DESCRIBED,
+    same_answer,
+    verdict,
+)
 from disorder_landscape.inference.word import Said
 from disorder_landscape.physics.disorder import disorder_realization
+from linear_data import CONFIG, SIZE, UNKNOWNS, Linear, posterior
 
-CONFIG = DatasetConfig(realizations=1, components=3, sites=50)
-UNKNOWNS = Unknowns(CONFIG)
-SIZE = len(UNKNOWNS.names)
 SETTINGS = RoundSettings()
-
-
-@dataclass
-class Linear:
-    """Data that are linear in the unknowns, or bent."""
-
-    data: np.ndarray
-    slope: np.ndarray
-    bend: float = 0.0
-    unknowns: Unknowns = UNKNOWNS
-    variance: np.ndarray = field(default_factory=lambda: np.full(40, 0.01**2))
-    channel: np.ndarray = field(default_factory=lambda: np.zeros(40, dtype=int))
-
-    def simulate(self, X):
-        Y = X @ self.slope
-        return Y + self.bend * np.sin(5 * Y)
-
-    def on_some_lines(self, share, rng):
-        return self
 
 
 @pytest.fixture(scope="module")
@@ -63,14 +40,6 @@ def linear():
     slope = rng.normal(size=(SIZE, 40))
     truth = UNKNOWNS.prior.draw(rng, 2)[0]
     return Linear(truth @ slope + 0.01 * rng.normal(size=40), slope)
-
-
-def posterior(observation):
-    """Bayes' theorem for linear data."""
-    prior, precision = UNKNOWNS.prior, np.linalg.inv(UNKNOWNS.prior.covariance)
-    weighted = observation.slope / observation.variance
-    covariance = np.linalg.inv(weighted @ observation.slope.T + precision)
-    return Gaussian(covariance @ (weighted @ observation.data + precision @ prior.mean), covariance)
 
 
 @pytest.mark.parametrize("seed", [0, 1, 2, 3])
@@ -92,8 +61,8 @@ def test_rounds_lead_from_the_prior_to_the_truth(seed):
     assert polished.squared_distance(truth) < 3 * SIZE
 
 
-@pytest.mark.parametrize("fine", [2.0, np.inf])
-def test_rounds_that_lead_nowhere_end(linear, fine):
+@pytest.mark.parametrize("nearly_noise", [2.0, np.inf])
+def test_rounds_that_lead_nowhere_end(linear, nearly_noise):
     """What nobody could learn from: data of waves far shorter than the prior is wide."""
     shares = []
 
@@ -106,13 +75,15 @@ def test_rounds_that_lead_nowhere_end(linear, fine):
             return self
 
     waves = Waves(linear.data, linear.slope)
-    settings = RoundSettings(patience=2, fine=fine)
+    settings = RoundSettings(patience=2, nearly_noise=nearly_noise)
     found = list(rounds(waves, UNKNOWNS.prior, [0], settings))
     assert len(found) < settings.rounds
     for values in ([one.unexplained for one in found], [one.spread / 0.95 for one in found]):
         assert min(values[-settings.patience :]) > min(values)
     assert min(one.unexplained for one in found) > settings.unexplained
-    assert (shares[-1] == 1) == (fine == np.inf)  # all data are tried if it might be the noise
+    assert (shares[-1] == 1) == (
+        nearly_noise == np.inf
+    )  # all data are tried if it might be the noise
 
 
 def test_rounds_go_on_as_long_as_they_know_less_than_a_step_would():
@@ -123,7 +94,9 @@ def test_rounds_go_on_as_long_as_they_know_less_than_a_step_would():
     waves.data = waves.simulate(UNKNOWNS.prior.draw(rng, 2)[0]) + rng.normal(size=40)
     counts = {}
     for near, patience in [(np.inf, 3), (2.0, 3), (0.0, 3), (0.0, 6)]:
-        settings = replace(SETTINGS, near=near, unexplained=np.inf, patience_when_straight=patience)
+        settings = replace(
+            SETTINGS, times_gauss_newton=near, unexplained=np.inf, patience_when_straight=patience
+        )
         found = list(rounds(waves, UNKNOWNS.prior, [0], settings))
         counts[near, patience] = len(found)
         if near == 2.0:
@@ -137,7 +110,7 @@ def test_rounds_go_on_as_long_as_they_know_less_than_a_step_would():
 def test_rounds_on_lines_do_not_count_data_twice(linear):
     """They come no closer than the posterior, which is where the first of them cannot be yet."""
     exact = posterior(linear)
-    settings = RoundSettings(unexplained=0.0, rounds=15, wider=1.0, nearer=1.0)
+    settings = RoundSettings(unexplained=0.0, rounds=15, wider=1.0, least_widening=1.0)
     *_, last = rounds(linear, UNKNOWNS.prior, [0], settings)
     deviation, least = (np.sqrt(np.diag(one.covariance)) for one in (last.distribution, exact))
     assert (deviation > 0.8 * least).all()

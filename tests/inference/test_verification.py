@@ -9,7 +9,7 @@ import xarray as xr
 import disorder_landscape as dl
 from disorder_landscape import ArgumentError, Nanowire, conductance
 from disorder_landscape.config import DatasetConfig
-from disorder_landscape.inference.verdict import scores, table
+from disorder_landscape.inference.comparison import scores, table
 from disorder_landscape.inference.verification import control_wires
 from disorder_landscape.physics.disorder import cosine_components
 from disorder_landscape.physics.labels import CONDUCTANCES

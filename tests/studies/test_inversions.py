@@ -19,8 +19,9 @@ from disorder_landscape.claims.inversions import (
     unmodelled_table,
 )
 from disorder_landscape.config import DatasetConfig
-from disorder_landscape.inference.inversion import CONVERGED, NOT_CONVERGED, word_heard
+from disorder_landscape.inference.inversion import word_heard
 from disorder_landscape.inference.measurement import empty_measurement
+from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED
 from disorder_landscape.physics.parameters import Nanowire
 from disorder_landscape.studies.components import measured_grid
 from disorder_landscape.studies.inversions import KEYS, Task, measured_wire, model_of, wrong

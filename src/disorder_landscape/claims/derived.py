@@ -15,7 +15,7 @@ import pandas as pd
 from scipy.stats import permutation_test, spearmanr
 
 from disorder_landscape.claims.claim import ResultMissingError
-from disorder_landscape.inference.inversion import CONVERGED
+from disorder_landscape.inference.verdict import CONVERGED
 from disorder_landscape.physics.parameters import FloatArray
 from disorder_landscape.studies.components import THIRTY_COMPONENTS
 from disorder_landscape.studies.crossings import (

@@ -10,20 +10,19 @@ import xarray as xr
 
 from disorder_landscape.arguments import ArgumentError, require, whole_number_in
 from disorder_landscape.config import DatasetConfig
+from disorder_landscape.inference.attempt import Attempt, best
 from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.inversion import (
-    Attempt,
     InversionSettings,
     Told,
-    best,
     invert,
     usual_settings,
-    verdict,
     word_heard,
 )
 from disorder_landscape.inference.measurement import Measurement, measurement_of, settings_of
 from disorder_landscape.inference.observation import Observation, noise_of_channels, stated_noise
 from disorder_landscape.inference.unknowns import Unknowns
+from disorder_landscape.inference.verdict import verdict
 from disorder_landscape.learning.model import (
     TrainedModel,
     load_model,

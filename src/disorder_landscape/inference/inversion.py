@@ -9,41 +9,24 @@ from typing import NamedTuple
 
 import numpy as np
 
+from disorder_landscape.inference.attempt import Attempt, attempt_at, best
 from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.first_guess import network_guess
-from disorder_landscape.inference.observation import Observation, objective, squared_misfits
+from disorder_landscape.inference.observation import Observation
 from disorder_landscape.inference.polish import polish
-from disorder_landscape.inference.population import Population, population
+from disorder_landscape.inference.population import population
 from disorder_landscape.inference.rounds import WITH_WORD, Recall, RoundSettings, rounds
 from disorder_landscape.inference.unknowns import Gaussian
+from disorder_landscape.inference.verdict import NOT_CONVERGED, is_surely_right, verdict
 from disorder_landscape.inference.word import Word, word_on
 from disorder_landscape.learning.model import TrainedModel
-from disorder_landscape.physics.parameters import BOLTZMANN, FloatArray
+from disorder_landscape.physics.parameters import BOLTZMANN
 
-CONVERGED = "converged"
-NOT_CONVERGED = "not converged"
-NOT_DESCRIBED = "not described by the model"
-"""The verdicts."""
-
-TOLERATED = 3.5
-"""χ² of all data, or of one channel's, may lie this many of its own deviations above its mean."""
-WRONG_MISFIT = 0.001
-"""Difference in e²/h, root mean square, that tells a wrong answer from the right one. If the noise
-hides less, an answer that fits is right; otherwise a second attempt must agree: of 200 wires of ten
-components with errors of 0.01 e²/h, three had a wrong answer that fitted."""
-FEW_DATA = 5
-"""For each unknown: a wrong answer may fit fewer, whatever the noise."""
-SAME_ANSWER = 2.0
-"""Two optima are the same if they are closer than this many of their own deviations, root mean
-square over the principal axes (in valleys that bend they differ by one or so)."""
 STRAIGHT = 1.0
 """An answer whose error bar is more than this many kT, or …"""
 LEAST_WIDTH = 1e-3
 """… this in meV, about the width of levels, is a population's: conductances are peaks of that
 width, and the posterior is no normal distribution about one optimum."""
-SAME_MISFIT = 0.05
-"""Two misfits are the same that differ by less than this part. If the best that can be found is
-twice found to be so bad, in different places even, then it is the model that does no better."""
 
 
 @dataclass(frozen=True)
@@ -56,39 +39,6 @@ class InversionSettings:
     more_members: float = 1.25
     """Each further attempt has so many times the members for each unknown, and shrinks their spread
     more slowly."""
-
-
-@dataclass(frozen=True, eq=False)
-class Attempt:
-    """Where rounds and their polish have ended."""
-
-    last: Gaussian
-    """Where members of one more round would have been drawn."""
-    answer: Gaussian
-    data: FloatArray
-    """What the most probable wire shows, shape (datum,)."""
-    objective: float
-    """−2 log of its posterior density, up to a constant."""
-    excess: float
-    """How many of its deviations χ² is above its mean: of all data, or of a channel, if more."""
-    rounds: int
-    """How many there were."""
-    population: Population | None = None
-    """Members of the posterior, where it is not the normal distribution of the answer."""
-
-    @property
-    def fits(self) -> bool:
-        """Whether the noise explains what is left of the misfit."""
-        return self.excess <= TOLERATED
-
-    @property
-    def is_posterior(self) -> bool:
-        """Whether the error bars are those of the posterior, as far as is known."""
-        return self.population is None or self.population.is_enough
-
-    def draw(self, rng: np.random.Generator, members: int) -> FloatArray:
-        """Return an even number of members of the posterior, shape (member, unknown)."""
-        return (self.answer if self.population is None else self.population).draw(rng, members)
 
 
 class Step(NamedTuple):
@@ -148,7 +98,7 @@ def invert(
         tell = partial(_tell, told, number, "polish")
         make = partial(polish, observation, found, told=tell)
         answer = _recalled(recall, f"polish.{number}", make)
-        attempts.append(_attempt(observation, found, answer, count))
+        attempts.append(attempt_at(observation, found, answer, count))
         outcome = attempts
         if number > 0 or settings.attempts == 1 or is_surely_right(observation):
             tell = partial(_tell, told, number, "population")
@@ -174,13 +124,6 @@ def _recalled(recall: Recall, name: str, make: Callable[[], Gaussian]) -> Gaussi
 
 def _tell(told: Told, attempt: int, stage: str, number: int, misfit: float, spread: float) -> None:
     told(Step(attempt, stage, number, misfit, spread))
-
-
-def _attempt(observation: Observation, last: Gaussian, answer: Gaussian, count: int) -> Attempt:
-    data = observation.simulate(answer.mean[None])[0]
-    squares = squared_misfits(observation, data)
-    height = float(objective(observation, answer.mean, data))
-    return Attempt(last, answer, data, height, chi_square_excess(observation, squares), count)
 
 
 def judged(
@@ -212,64 +155,3 @@ def _with_more_members(settings: InversionSettings, number: int) -> RoundSetting
         members_per_unknown=first.members_per_unknown * more,
         least_shrinking=first.least_shrinking ** (1 / more),
     )
-
-
-def chi_square_excess(observation: Observation, squares: FloatArray) -> float:
-    """Return how far χ² is above its mean in its deviations, the most over channels and over all.
-
-    Parameters
-    ----------
-    observation : Observation
-    squares : array, shape (datum,)
-        Squared misfits in units of the errors' variance.
-    """
-    sets = [np.ones(squares.size, dtype=bool)]
-    sets += [observation.channel == c for c in np.unique(observation.channel)]
-    return max(float((squares[s].sum() - s.sum()) / np.sqrt(2 * s.sum())) for s in sets)
-
-
-def best(attempts: list[Attempt]) -> Attempt:
-    """Return the attempt with the most probable answer."""
-    return min(attempts, key=lambda attempt: attempt.objective)
-
-
-def verdict(observation: Observation, attempts: list[Attempt]) -> str:
-    """Say what became of it.
-
-    An answer that explains the data has converged, if a wrong one could not or another attempt
-    agrees. Where none explains the data but attempts agree on one, or on how far off the best of
-    them are, it is the model that cannot; where they do not agree either, a better answer may have
-    been missed.
-    """
-    chosen = best(attempts)
-    others = [attempt for attempt in attempts if attempt is not chosen]
-    agreed = any(same_answer(observation, chosen, other) for other in others)
-    if chosen.fits:
-        known = agreed or is_surely_right(observation)
-        return CONVERGED if known and chosen.is_posterior else NOT_CONVERGED
-    as_bad = any(same_misfit(observation, chosen, other) for other in others)
-    return NOT_DESCRIBED if agreed or as_bad else NOT_CONVERGED
-
-
-def is_surely_right(observation: Observation) -> bool:
-    """Return whether the noise hides so little that an answer that fits needs no second attempt."""
-    count = observation.data.size
-    hidden = TOLERATED * np.sqrt(2 / count) * observation.variance.mean()
-    return bool(hidden < WRONG_MISFIT**2 and count >= FEW_DATA * len(observation.unknowns.names))
-
-
-def same_answer(observation: Observation, one: Attempt, other: Attempt) -> bool:
-    """Return whether two attempts have ended in the same optimum."""
-    scatter = max(1.0, _misfit(observation, one))
-    squares = one.answer.squared_distance(other.answer.mean) / one.answer.mean.size
-    return bool(squares < (SAME_ANSWER * scatter) ** 2)
-
-
-def same_misfit(observation: Observation, one: Attempt, other: Attempt) -> bool:
-    """Return whether two attempts are equally far off the data."""
-    least, most = sorted(_misfit(observation, attempt) for attempt in (one, other))
-    return most < (1 + SAME_MISFIT) * least
-
-
-def _misfit(observation: Observation, attempt: Attempt) -> float:
-    return float(np.sqrt(squared_misfits(observation, attempt.data).mean()))

@@ -9,9 +9,9 @@ import numpy as np
 import xarray as xr
 
 from disorder_landscape.files import replacing
-from disorder_landscape.inference.inversion import CONVERGED
 from disorder_landscape.inference.measurement import Measurement
 from disorder_landscape.inference.report import alpha_with_deviation, error_bar
+from disorder_landscape.inference.verdict import CONVERGED
 from disorder_landscape.physics.labels import CONDUCTANCES
 from disorder_landscape.physics.parameters import FloatArray
 

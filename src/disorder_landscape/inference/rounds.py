@@ -50,13 +50,13 @@ class RoundSettings:
     closer, where there may be more than one optimum again, some deviations apart. …"""
     members_on_all: float = 0.5
     """… Then this part of the members is enough: so close by, lines explain nearly all."""
-    fine: float = 2.0
+    nearly_noise: float = 2.0
     """Rounds go on with all data, too, where they stand still with less than this many times the
     noise unexplained: then it is the noise that hides the rest."""
     wider: float = 1.2
     """The next round's wires are drawn this much more widely than the answer says, …"""
-    nearer: float = 0.8
-    farther: float = 4.0
+    least_widening: float = 0.8
+    most_widening: float = 4.0
     """… and as much more, or less, as the data lie farther out than this round's members, or nearer
     to the middle; between these factors in variance."""
     least_shrinking: float = 0.35
@@ -64,12 +64,12 @@ class RoundSettings:
     unexplained: float = 0.3
     """Done when lines through the conductances leave less unexplained than this part of the noise
     and …"""
-    near: float = 2.0
+    times_gauss_newton: float = 2.0
     """… the spread is less than this many times that of Gauss–Newton steps: much noise hides that
     conductances are not straight, and such steps would end in the next valley, …"""
     patience: int = 8
     """… or when in so many rounds neither that has become less nor the spread, …"""
-    narrower: float = 0.95
+    progress: float = 0.95
     """… by this factor at least: these lead nowhere, …"""
     patience_when_straight: int = 3
     """… or in so many where lines leave no more unexplained than was said."""
@@ -142,14 +142,14 @@ def rounds(
         if straight and share == 1:
             make = partial(_gauss_newton, observation, one)
             step = recall(f"near.{key}.{number}", make)
-            if one.spread < settings.near * step["spread"]:
+            if one.spread < settings.times_gauss_newton * step["spread"]:
                 return
-        narrower = one.spread < settings.narrower * narrowest
+        narrower = one.spread < settings.progress * narrowest
         since = 0 if narrower or one.unexplained < least else since + 1
         least, narrowest = min(least, one.unexplained), one.spread if narrower else narrowest
         patience = settings.patience_when_straight if straight else settings.patience
         if (straight and share < 1) or since >= patience:
-            if share == 1 or least > settings.fine:
+            if share == 1 or least > settings.nearly_noise:
                 return
             share, since, least, narrowest = 1.0, 0, np.inf, np.inf
             count = round(settings.members_on_all * count)
@@ -191,7 +191,9 @@ def _round(members: Members, proposal: Gaussian, settings: RoundSettings) -> dic
     error = (directions * share) @ directions.T
     # members' own answers have the variance 1 − error: do the data lie as far out as these?
     outside = (at**2).mean() / (1 - share).mean()
-    widening = settings.wider**2 * float(np.clip(outside, settings.nearer, settings.farther))
+    widening = settings.wider**2 * float(
+        np.clip(outside, settings.least_widening, settings.most_widening)
+    )
     learned = Gaussian(proposal.mean + root @ at, root @ error @ root.T)
     answer = _upon_the_prior(learned, proposal, prior)
     wider = Gaussian(answer.mean, answer.covariance * widening)

@@ -1,104 +1,68 @@
-"""What the mismatches of a prediction and of wrong disorder say."""
+"""What has become of an inversion: converged, not converged, or not described by the model."""
 
 from __future__ import annotations
 
 import numpy as np
-import xarray as xr
 
-from disorder_landscape.physics.labels import CONDUCTANCES
-from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.inference.attempt import TOLERATED, Attempt, best
+from disorder_landscape.inference.observation import Observation, squared_misfits
 
-SIGNIFICANCE = 0.05
-"""Largest p-value of a prediction that passes."""
-UNLIKELY = 0.02
-"""Further data are no longer an inversion's if its members make such with no more probability."""
-LEAST_SIGNAL = 0.5
-"""Part of the mismatch of wrong disorder that must not be noise in one channel at least."""
-_TINY = np.finfo(float).tiny
+CONVERGED = "converged"
+NOT_CONVERGED = "not converged"
+NOT_DESCRIBED = "not described by the model"
+"""The verdicts."""
+
+WRONG_MISFIT = 0.001
+"""Difference in e²/h, root mean square, that tells a wrong answer from the right one. If the noise
+hides less, an answer that fits is right; otherwise a second attempt must agree: of 200 wires of ten
+components with errors of 0.01 e²/h, three had a wrong answer that fitted."""
+FEW_DATA = 5
+"""For each unknown: a wrong answer may fit fewer, whatever the noise."""
+SAME_ANSWER = 2.0
+"""Two optima are the same if they are closer than this many of their own deviations, root mean
+square over the principal axes (in valleys that bend they differ by one or so)."""
+SAME_MISFIT = 0.05
+"""Two misfits are the same that differ by less than this part. If the best that can be found is
+twice found to be so bad, in different places even, then it is the model that does no better."""
 
 
-def weights(typical: FloatArray, noise: float) -> FloatArray:
-    """Return which part of typical mismatches is not noise, shape (measurement, channel)."""
-    return np.asarray(np.clip(1 - (noise / np.maximum(typical, _TINY)) ** 2, 0.0, 1.0))
+def verdict(observation: Observation, attempts: list[Attempt]) -> str:
+    """Say what became of it.
 
-
-def scores(squares: FloatArray, typical: FloatArray, noise: float) -> FloatArray:
-    """Return root mean squares of mismatches in units of typical ones, weighted.
-
-    Parameters
-    ----------
-    squares : array, shape (…, measurement, channel)
-        Squared mismatches in (e²/h)².
-    typical : array, shape (measurement, channel)
-        Mismatches of wrong disorder in e²/h.
-    noise : float
-        In e²/h.
-
-    Returns
-    -------
-    array, shape (…)
+    An answer that explains the data has converged, if a wrong one could not or another attempt
+    agrees. Where none explains the data but attempts agree on one, or on how far off the best of
+    them are, it is the model that cannot; where they do not agree either, a better answer may have
+    been missed.
     """
-    weight = weights(typical, noise)
-    relative = squares / np.maximum(typical, _TINY) ** 2
-    return np.asarray(np.sqrt((relative * weight).sum((-2, -1)) / max(weight.sum(), _TINY)))
+    chosen = best(attempts)
+    others = [attempt for attempt in attempts if attempt is not chosen]
+    agreed = any(same_answer(observation, chosen, other) for other in others)
+    if chosen.fits:
+        known = agreed or is_surely_right(observation)
+        return CONVERGED if known and chosen.is_posterior else NOT_CONVERGED
+    as_bad = any(same_misfit(observation, chosen, other) for other in others)
+    return NOT_DESCRIBED if agreed or as_bad else NOT_CONVERGED
 
 
-def comparison(mismatch: FloatArray, shift: FloatArray, noise: float) -> xr.Dataset:
-    """Return what `verify` does, from mismatches (wire, measurement, channel) and shifts (wire,).
-
-    The first wire is the predicted one, the others are controls.
-    """
-    typical = np.median(mismatch[1:], axis=0)
-    score = scores(mismatch**2, typical, noise)
-    as_close, controls = int(np.sum(score[1:] <= score[0])), len(score) - 1
-    p = (1 + as_close) / (1 + controls)  # the prediction counts as one more try
-    channels = ("measurement", "channel")
-    data = {
-        "mismatch": (channels, mismatch[0], {"units": "e^2/h"}),
-        "control_mismatch": (("control", *channels), mismatch[1:], {"units": "e^2/h"}),
-        "ratio": (channels, mismatch[0] / np.maximum(typical, _TINY), {"units": "1"}),
-        "score": ((), score[0], {"units": "1"}),
-        "control_score": ("control", score[1:], {"units": "1"}),
-        "shift": ((), shift[0], {"units": "meV"}),
-        "control_shift": ("control", shift[1:], {"units": "meV"}),
-        "p_value": ((), p, {"units": "1"}),
-    }
-    attrs = {"noise": noise, "verdict": _verdict(score[0], as_close, controls, p)}
-    if weights(typical, noise).max() < LEAST_SIGNAL:
-        attrs["verdict"] = "Nothing can be said: the noise hides what wrong disorder would change."
-    return xr.Dataset(data, coords={"channel": list(CONDUCTANCES)}, attrs=attrs)
+def is_surely_right(observation: Observation) -> bool:
+    """Return whether the noise hides so little that an answer that fits needs no second attempt."""
+    count = observation.data.size
+    hidden = TOLERATED * np.sqrt(2 / count) * observation.variance.mean()
+    return bool(hidden < WRONG_MISFIT**2 and count >= FEW_DATA * len(observation.unknowns.names))
 
 
-def _verdict(score: float, as_close: int, controls: int, p: float) -> str:
-    result = "passes" if p <= SIGNIFICANCE else "fails"
-    return (
-        f"The prediction {result}: its mismatch is {score:.2g} times that of wrong disorder, and "
-        f"{as_close or 'none'} of {controls} wires with wrong disorder came as close (p = {p:.2g})."
-    )
+def same_answer(observation: Observation, one: Attempt, other: Attempt) -> bool:
+    """Return whether two attempts have ended in the same optimum."""
+    scatter = max(1.0, _misfit(observation, one))
+    squares = one.answer.squared_distance(other.answer.mean) / one.answer.mean.size
+    return bool(squares < (SAME_ANSWER * scatter) ** 2)
 
 
-def of_members(p: float) -> str:
-    """Return what the p-value of an inversion's members says of further data (`predictive_p`)."""
-    but = "Members of the inversion do not make such data: its error bars or its model are wrong"
-    return f"{'Members of the inversion make such data' if p > UNLIKELY else but} (p = {p:.2g})."
+def same_misfit(observation: Observation, one: Attempt, other: Attempt) -> bool:
+    """Return whether two attempts are equally far off the data."""
+    least, most = sorted(_misfit(observation, attempt) for attempt in (one, other))
+    return most < (1 + SAME_MISFIT) * least
 
 
-def table(result: xr.Dataset) -> list[str]:
-    """Return the lines of a table of what `verify` has found, in e²/h, and its verdict."""
-    lines = [
-        f"{'measurement':30} channel  mismatch  wrong disorder: median  smallest   ratio",
-    ]
-    wrong = result["control_mismatch"].to_numpy()
-    for i, name in enumerate(result["measurement"].to_numpy()):
-        for c, channel in enumerate(result["channel"].to_numpy()):
-            lines.append(
-                f"{str(name)[-30:] if c == 0 else '':30} {channel:7} "
-                f"{result['mismatch'].to_numpy()[i, c]:9.5f} {np.median(wrong[:, i, c]):23.5f} "
-                f"{wrong[:, i, c].min():9.5f} {result['ratio'].to_numpy()[i, c]:7.3f}"
-            )
-    shift = 1e3 * float(result["shift"])
-    lines.append(f"mean of V that fits best: {shift:g} µeV; noise: {result.attrs['noise']:g} e²/h")
-    lines.append(str(result.attrs["verdict"]))
-    if "p_members" in result:
-        lines.append(of_members(float(result["p_members"])))
-    return lines
+def _misfit(observation: Observation, attempt: Attempt) -> float:
+    return float(np.sqrt(squared_misfits(observation, attempt.data).mean()))

@@ -25,10 +25,10 @@ from numpy.typing import ArrayLike
 
 from disorder_landscape.arguments import grid_in, number_in, require, whole_number_in
 from disorder_landscape.config import DatasetConfig
+from disorder_landscape.inference.comparison import SIGNIFICANCE, comparison, scores
 from disorder_landscape.inference.measurement import Measurement, measurement_of, simulated
 from disorder_landscape.inference.observation import SOLVER_ERROR
 from disorder_landscape.inference.posterior import predictive_p
-from disorder_landscape.inference.verdict import SIGNIFICANCE, comparison, scores
 from disorder_landscape.physics.disorder import MEAN_STD, disorder_realization
 from disorder_landscape.physics.labels import CONDUCTANCES
 from disorder_landscape.physics.parameters import FloatArray, Nanowire

@@ -1,0 +1,45 @@
+"""Data that are linear in the unknowns, or bent, and their posterior, which is known."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from disorder_landscape.config import DatasetConfig
+from disorder_landscape.inference.unknowns import Gaussian, Unknowns
+
+CONFIG = DatasetConfig(realizations=1, components=3, sites=50)
+UNKNOWNS = Unknowns(CONFIG)
+SIZE, DATA = len(UNKNOWNS.names), 40
+
+
+@dataclass(frozen=True)
+class Measured:
+    temperature: float = 0.05
+
+
+@dataclass
+class Linear:
+    """What an `Observation` is to rounds, polish and populations."""
+
+    data: np.ndarray
+    slope: np.ndarray
+    bend: float = 0.0
+    unknowns: Unknowns = UNKNOWNS
+    variance: np.ndarray = field(default_factory=lambda: np.full(DATA, 0.01**2))
+    channel: np.ndarray = field(default_factory=lambda: np.zeros(DATA, dtype=int))
+    measurement: Measured = Measured()
+
+    def simulate(self, X):
+        Y = X @ self.slope
+        return Y + self.bend * np.sin(5 * Y)
+
+    def on_some_lines(self, share, rng):
+        return self
+
+
+def posterior(observation):
+    """Bayes' theorem for linear data."""
+    prior, precision = UNKNOWNS.prior, np.linalg.inv(UNKNOWNS.prior.covariance)
+    weighted = observation.slope / observation.variance
+    covariance = np.linalg.inv(weighted @ observation.slope.T + precision)
+    return Gaussian(covariance @ (weighted @ observation.data + precision @ prior.mean), covariance)
