@@ -228,5 +228,7 @@ def test_members_of_an_inversion_make_the_data_or_not(barrier):
     wrong = verify(inversion_of(shifted, apart), measured, **options)
     assert wrong["p_members"] < 0.02
     assert wrong["p_value"] < 0.06  # far better than wrong disorder, even so
-    for result, says in ((right, "make such data"), (wrong, "do not make such data")):
+    few = verify(inversion_of(TRUE, apart[:9]), measured, **options)
+    results = (right, wrong, few)
+    for result, says in zip(results, ("make", "do not make", "cannot say"), strict=True):
         assert says in table(result.assign_coords(measurement=["a"]))[-1]

@@ -12,6 +12,8 @@ SIGNIFICANCE = 0.05
 """Largest p-value of a prediction that passes."""
 UNLIKELY = 0.02
 """Further data are no longer an inversion's if its members make such with no more probability."""
+LEAST_MEMBERS = round(1 / UNLIKELY) - 1
+"""So many can tell that."""
 LEAST_SIGNAL = 0.5
 """Part of the mismatch of wrong disorder that must not be noise in one channel at least."""
 _TINY = np.finfo(float).tiny
@@ -78,9 +80,11 @@ def _verdict(score: float, as_close: int, controls: int, p: float) -> str:
 
 
 def of_members(p: float) -> str:
-    """Return what the p-value of an inversion's members says of further data (`predictive_p`)."""
-    but = "Members of the inversion do not make such data: its error bars or its model are wrong"
-    return f"{'Members of the inversion make such data' if p > UNLIKELY else but} (p = {p:.2g})."
+    """Return what `predictive_p` of an inversion's members says; NaN is that of too few."""
+    if np.isnan(p):
+        return f"Fewer than {LEAST_MEMBERS} members cannot say whether they make such data."
+    but = "do not make such data: its error bars, its model or the noise that is stated is wrong"
+    return f"Members of the inversion {'make such data' if p > UNLIKELY else but} (p = {p:.2g})."
 
 
 def table(result: xr.Dataset) -> list[str]:

@@ -25,7 +25,12 @@ from numpy.typing import ArrayLike
 
 from disorder_landscape.arguments import grid_in, number_in, require, whole_number_in
 from disorder_landscape.config import DatasetConfig
-from disorder_landscape.inference.comparison import SIGNIFICANCE, comparison, scores
+from disorder_landscape.inference.comparison import (
+    LEAST_MEMBERS,
+    SIGNIFICANCE,
+    comparison,
+    scores,
+)
 from disorder_landscape.inference.measurement import Measurement, measurement_of, simulated
 from disorder_landscape.inference.observation import SOLVER_ERROR
 from disorder_landscape.inference.posterior import predictive_p
@@ -85,7 +90,8 @@ def verify(
         over measurements and channels; shift and control_shift (control) in meV; p_value, the
         chance that wrong disorder scores as well; the sentence verdict as attribute. Channels in
         which wrong disorder differs by no more than the noise have no weight in the scores. Of an
-        inversion, p_members: how likely its members make data as unlike their prediction as these.
+        inversion, p_members: how likely its members make data as unlike their prediction as these,
+        NaN where they are fewer than 49.
 
     Raises
     ------
@@ -119,7 +125,9 @@ def _p_of_members(
     prediction: xr.Dataset, measured: Sequence[Measurement], noise: float, rng: np.random.Generator
 ) -> float:
     """Return `predictive_p` of an inversion's members, which know the mean of V."""
-    potential = prediction["potential"].transpose("member", "site").to_numpy()
+    potential = prediction["potential"].to_numpy()
+    if len(potential) < LEAST_MEMBERS:
+        return np.nan
     members = list(zip(potential, prediction["alpha"].to_numpy(), strict=True))
     shown = []
     for m in measured:
@@ -131,16 +139,18 @@ def _p_of_members(
 
 
 def _predicted_wire(prediction: xr.Dataset) -> Nanowire:
+    """Return the wire that was predicted, or the mean of what an inversion has found."""
     must = "hold the potential and alpha of one wire, as `landscape predict` writes them"
-    if _is_inversion(prediction):
-        mean = {"potential": prediction["potential_mean"], "alpha": prediction["alpha"].mean()}
-        prediction = xr.Dataset(mean)  # of the members that `infer` has found
-    for name, dims in (("potential", ("site",)), ("alpha", ())):
+    inversion = _is_inversion(prediction)
+    wanted = {"potential": ("member", "site"), "alpha": ("member",)}
+    for name, dims in wanted.items():
         there = isinstance(prediction, xr.Dataset) and name in prediction.variables
         require(there, "prediction", must, f"it lacks {name}")
         found = prediction[name].dims
-        require(found == dims, "prediction", must, f"the dims of {name} are {found}")
-    return Nanowire(prediction["potential"].to_numpy(), alpha=float(prediction["alpha"]))
+        right = found == (dims if inversion else dims[1:])
+        require(right, "prediction", must, f"the dims of {name} are {found}")
+    V = prediction["potential_mean" if inversion else "potential"].to_numpy()
+    return Nanowire(V, alpha=float(prediction["alpha"].mean()))
 
 
 def _disorder_model(
