@@ -281,8 +281,7 @@ def infer(
         result = find(
             measured, model, errors, not from_prior, members, seed, None, unfinished, told
         )
-    attrs = made_here()
-    write_dataset(result, output, attrs, may_lack=["misfit"])  # of channels without data
+    write_dataset(result, output, made_here(), may_lack=["misfit"])  # of channels without data
     unfinished.unlink(missing_ok=True)
     if plot is not None:
         usual = {name: result.attrs[name] for name in ("theta", "barrier", "temperature")}
@@ -349,7 +348,7 @@ def verify(
         result = compare(predicted, measured, noise, controls, seed, config, tried, progress)
     result = result.assign_coords(measurement=[str(path) for path in measurements])
     if output is not None:
-        write_dataset(result, output, made_here())
+        write_dataset(result, output, made_here(), may_lack=["p_members"])  # where they are few
     print("\n".join(table(result)))
     if output is not None:
         print(f"wrote {output}")

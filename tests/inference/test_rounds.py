@@ -81,9 +81,8 @@ def test_rounds_that_lead_nowhere_end(linear, nearly_noise):
     for values in ([one.unexplained for one in found], [one.spread / 0.95 for one in found]):
         assert min(values[-settings.patience :]) > min(values)
     assert min(one.unexplained for one in found) > settings.unexplained
-    assert (shares[-1] == 1) == (
-        nearly_noise == np.inf
-    )  # all data are tried if it might be the noise
+    all_data = shares[-1] == 1  # are tried if it might be the noise
+    assert all_data == (nearly_noise == np.inf)
 
 
 def test_rounds_go_on_as_long_as_they_know_less_than_a_step_would():
