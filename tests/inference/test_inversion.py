@@ -1,7 +1,9 @@
 """Inversions of short wires whose disorder is known, and of the fixed wire of the README."""
 
+import json
 from dataclasses import replace
 
+import keras
 import numpy as np
 import pytest
 import xarray as xr
@@ -171,6 +173,24 @@ def test_an_interrupted_run_goes_on(measured, inferred, tmp_path):
     deviation = float(np.sqrt((inferred["potential_deviation"] ** 2).mean()))
     assert second[-1].spread == pytest.approx(deviation, rel=0.1)
     assert result.identical(inferred)
+
+
+def test_a_run_with_another_network_starts_anew(measured, tmp_path):
+    checkpoint = tmp_path / "unfinished.json"
+    network = keras.Sequential(
+        [keras.Input((6, 6, 3, 4)), keras.layers.Flatten(), keras.layers.Dense(len(LABELS.names))]
+    )
+    model = replace(MODEL, network=network)
+
+    def interrupt(step):
+        raise KeyboardInterrupt
+
+    for runs in 1, 1, 2:
+        if runs == 2:  # as after another training with the same configuration
+            network.set_weights([2 * weights for weights in network.get_weights()])
+        with pytest.raises(KeyboardInterrupt):
+            dl.infer(measured, model, NOISE, checkpoint=checkpoint, told=interrupt)
+        assert len(json.loads(checkpoint.read_text())) == runs
 
 
 def test_the_seed_decides(measured, inferred):

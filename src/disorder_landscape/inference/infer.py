@@ -119,6 +119,8 @@ def infer(
     settings = settings or usual_settings(word)
     fingerprint = repr((whole_config, errors.tolist(), seed, settings, start)).encode()
     fingerprint += b"".join(np.asarray(value).tobytes() for value in vars(measurement).values())
+    weights = [] if trained is None else trained.network.get_weights()
+    fingerprint += b"".join(values.tobytes() for values in weights)
     notes = Checkpoint(checkpoint, fingerprint)
     attempts = invert(observation, trained, seed, settings, told, notes)
     chosen = best(attempts)

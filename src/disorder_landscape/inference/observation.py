@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from disorder_landscape.arguments import number_in, require
 from disorder_landscape.inference.measurement import Measurement, simulated
@@ -59,7 +59,7 @@ class Observation:
     @property
     def variance(self) -> FloatArray:
         """Of the data's errors in (e²/h)², shape (datum,), the solver's included."""
-        return np.asarray((self.noise**2 + SOLVER_ERROR**2)[self.channel])
+        return np.asarray(errors_variance(self.noise)[self.channel])
 
     def simulate(self, X: FloatArray) -> FloatArray:
         """Return the data of members (member, unknown), shape (member, datum)."""
@@ -97,6 +97,11 @@ class Observation:
         total = np.bincount(self.channel, squares, minlength=len(CONDUCTANCES))
         mean = np.divide(total, count, out=np.full(count.size, np.nan), where=count > 0)
         return np.asarray(np.sqrt(mean))
+
+
+def errors_variance(noise: ArrayLike) -> FloatArray:
+    """Return the variance of measured errors and the solver's own in (e²/h)², of noise in e²/h."""
+    return np.asarray(noise) ** 2 + SOLVER_ERROR**2
 
 
 def overall_misfit(observation: Observation, y: FloatArray) -> float:

@@ -32,7 +32,7 @@ from disorder_landscape.inference.comparison import (
     scores,
 )
 from disorder_landscape.inference.measurement import Measurement, measurement_of, simulated
-from disorder_landscape.inference.observation import SOLVER_ERROR
+from disorder_landscape.inference.observation import errors_variance
 from disorder_landscape.inference.posterior import predictive_p
 from disorder_landscape.physics.disorder import MEAN_STD, disorder_realization
 from disorder_landscape.physics.labels import CONDUCTANCES
@@ -134,7 +134,7 @@ def _p_of_members(
         wires = [Nanowire(V, alpha=float(alpha), barrier=m.barrier) for V, alpha in members]
         shown.append(simulated(wires, m).reshape(len(wires), -1))
     data = np.concatenate([m.G.ravel() for m in measured])
-    variance = np.full(data.size, noise**2 + SOLVER_ERROR**2)
+    variance = np.full(data.size, errors_variance(noise))
     return predictive_p(np.concatenate(shown, axis=1), data, variance, rng)
 
 
