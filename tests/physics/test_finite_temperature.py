@@ -48,6 +48,30 @@ def test_poles_that_all_but_meet(seed):
     assert energies.item() == finite_temperature.NODES[0] + energy_plan.CHECKS
 
 
+def test_conductances_are_smooth_where_two_poles_meet_and_part():
+    """At −1.666i µeV, of levels at 43 neV whose widths differ by as much: jumps of 0.005 e²/h."""
+    components = np.array(
+        [
+            -0.18085913123333866,
+            -0.6884162858499306,
+            1.1460079879236569,
+            0.08884115133619248,
+            -0.9298999588140491,
+        ]
+    )
+    V = potential_from_components(components, 300, 0.0018564955644745748)
+    wire = dl.Nanowire(V, alpha=7.849524852248008)
+    u = np.linspace(-1, 1, 21)
+    mu, B, bias = np.array([0.6 * 2 / 14]), 0.8 * 9 / 14 + 1e-5 * u, np.array(BIAS)
+    found, estimate, _ = exact_average([wire], mu, B, bias, 0.05)
+    exact = thermal_quadrature([wire], mu, B[::10], bias, 0.05)
+    assert abs(found[:, :, ::10] - exact.conductance).max() <= exact.error.max() < 1e-5
+    along_B = found.reshape(u.size, -1)
+    smooth = np.polynomial.polynomial.polyfit(u, along_B, 3)
+    assert_allclose(along_B, np.polynomial.polynomial.polyval(u, smooth).T, rtol=0, atol=1e-6)
+    assert estimate.max() < 2e-5
+
+
 def test_two_poles_that_have_just_left_the_imaginary_axis():
     """At ±0.25 − 10.77i µeV; Rayleigh quotients that start on the axis stay there."""
     arguments = np.array([0.15]), np.array([0.7]), np.array(BIAS), 0.05

@@ -38,10 +38,13 @@ STEPS = 2
 """Steps of a batch before it is looked at."""
 ROUNDS = 8
 """Most batches per pole."""
+CENTRAL = 1e-7
+"""Poles with |Re z| below this (meV) are their own mirror images −z*."""
 CONVERGED = 3e-4
-"""A pole has converged if before the last step it was off by less than this part of its width:
-cubically, 1e-11 is left. It was off by |x_old||x_new|/|x_newᵀ(1 − H')x_new| at most; the quotient
-itself may stand still elsewhere, where two poles all but meet."""
+"""A pole has converged if before the last step it was off by less than this part of its width, and
+of the way to the next pole, whose vector is mixed in by as much: cubically, 1e-11 is left. It was
+off by |x_old||x_new|/|x_newᵀ(1 − H')x_new| at most; the quotient itself may stand still elsewhere,
+where two poles all but meet. There residues of opposite sign are large, and so are their errors."""
 
 
 class Batch(NamedTuple):
@@ -232,6 +235,19 @@ class Poles(NamedTuple):
     norm: ComplexArray  # (pole,), xᵀ(1 − H')x
 
 
+@nb.njit(cache=True)
+def _isolation(z: ComplexArray, p: int) -> float:  # pragma: no cover
+    """Return how far from pole p the next one, or the mirror image of one, is."""
+    x, y = z[p].real, z[p].imag
+    nearest = 2 * abs(x) if abs(x) > CENTRAL else np.inf
+    nearest *= nearest
+    for k in range(z.size):
+        if k != p:
+            across, along = abs(x) - abs(z[k].real), y - z[k].imag
+            nearest = min(nearest, across * across + along * along)
+    return float(np.sqrt(nearest))
+
+
 @nb.njit(cache=True, error_model="numpy")
 def iterate(
     poles: Poles, active: NDArray[np.int64], levels: Levels, leads: Leads, b: Batch
@@ -271,7 +287,7 @@ def iterate(
                 poles.norm[p] = norm * b.scale[l] ** 2
                 poles.z[p] = complex(b.zr[l], b.zi[l])
                 off = np.sqrt(before * after) * b.scale[l]
-                if not off <= CONVERGED * (FAINT - b.zi[l]):
+                if not off <= CONVERGED * (FAINT + min(-b.zi[l], _isolation(poles.z, p))):
                     active[left] = p
                     left += 1
         if left == 0:

@@ -12,10 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from disorder_landscape.physics.dressing import ENDS, Leads, Levels
-from disorder_landscape.physics.inverse_iteration import FAINT, Batch, Poles, iterate
+from disorder_landscape.physics.inverse_iteration import CENTRAL, FAINT, Batch, Poles, iterate
 
-CENTRAL = 1e-7
-"""Poles with |Re z| below this (meV) are their own mirror images."""
 EQUAL = 1e-4
 """Poles nearer than this part of their width are one, of two vectors."""
 BESIDE = 0.1
