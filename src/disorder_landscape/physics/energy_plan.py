@@ -20,6 +20,9 @@ from disorder_landscape.physics.vectors import WIDTH
 
 CHECKS = 4
 """Energies at which the model is compared with the solver."""
+LOWEST = 0.2
+"""The lowest of them, where the nodes are at k + ½ and zero is 0: below all nodes, where levels lie
+that the nodes hardly see. (Without it 13 of 96,000 sets were off by more than 10⁻⁴ e²/h.)"""
 
 
 class EnergyPlan(NamedTuple):
@@ -42,7 +45,7 @@ class EnergyPlan(NamedTuple):
 def energy_plan(wires: Sequence[Nanowire], bias: FloatArray, kT: float, nodes: int) -> EnergyPlan:
     """Plan the energies for these wires and biases with `nodes` nodes and CHECKS checks."""
     window = abs(bias).max() + REACH * kT
-    between = np.arange(1, CHECKS + 1) * (nodes - 1) // CHECKS
+    between = np.append(LOWEST, np.arange(1, CHECKS) * (nodes - 1) // CHECKS)
     theta = np.pi * between / (2 * nodes)
     omega = np.concatenate([chebyshev_nodes(window, nodes), window * np.sin(theta)])
     at_nodes, checks = omega[:nodes], omega[nodes:]
