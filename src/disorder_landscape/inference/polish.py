@@ -1,8 +1,8 @@
 """The last micro-electronvolts: Gauss–Newton steps on the exact posterior, and Laplace's spread.
 
 The derivatives are central differences of the thermal averages along the principal axes of the
-present posterior, half a deviation to either side: where the data say little the steps are long, so
-that the simulation's own error (10⁻⁵ e²/h) does not pass for a slope. (`conductance_gradient` has
+present posterior, half a deviation to either side, and no less than is needed for the simulation's
+own error (of few conductances up to 10⁻⁴ e²/h) not to pass for a slope. (`conductance_gradient` has
 the derivatives at zero temperature, of peaks far narrower than kT, whose average would take
 thousands of energies.)
 """
@@ -20,8 +20,9 @@ from disorder_landscape.physics.parameters import FloatArray
 
 DIFFERENCE = 0.5
 """Step of the differences in deviations of the posterior, …"""
-LEAST_DIFFERENCE = 2e-5
-"""… or, if that is more, in meV per site, root mean square: a two-hundredth of kT at 50 mK."""
+LEAST_DIFFERENCE = 1e-4
+"""… or, if that is more, in meV per site, root mean square: a fortieth of kT at 50 mK. (Five times
+as much changes error bars by a few percent, and so, now and then, does a fifth of it.)"""
 ALPHA_UNIT = 50.0
 """Change of α in nm for that of V in meV that is as large to the conductances."""
 STEPS = 12
