@@ -379,7 +379,13 @@ def test_excess_looks_at_each_channel():
 
 @pytest.mark.parametrize(
     ("misfits", "expected"),
-    [((2.0, 2.05), NOT_DESCRIBED), ((2.3, 2.0), NOT_CONVERGED), ((1.0, 2.0), NOT_CONVERGED)],
+    [
+        ((2.0, 2.05), NOT_DESCRIBED),
+        ((2.3, 2.0), NOT_CONVERGED),
+        ((1.0, 2.0), NOT_CONVERGED),
+        ((1.35, 1.39), NOT_CONVERGED),  # but for the noise, 0.91 and 0.97
+        ((1.35, 1.36), NOT_DESCRIBED),
+    ],
 )
 def test_answers_that_are_equally_bad_say_that_the_model_is(linear, misfits, expected):
     """… and one that fits does not, but data as noisy as these need a second that agrees."""

@@ -22,8 +22,9 @@ SAME_ANSWER = 2.0
 """Two optima are the same if they are closer than this many of their own deviations, root mean
 square over the principal axes (in valleys that bend they differ by one or so)."""
 SAME_MISFIT = 0.05
-"""Two misfits are the same that differ by less than this part. If the best that can be found is
-twice found to be so bad, in different places even, then it is the model that does no better."""
+"""Two misfits are the same of which what the noise leaves unexplained differs by less than this
+part. If the best that can be found is twice found to be so bad, in different places even, then it
+is the model that does no better."""
 
 
 def verdict(observation: Observation, attempts: list[Attempt]) -> str:
@@ -59,10 +60,12 @@ def same_answer(observation: Observation, one: Attempt, other: Attempt) -> bool:
 
 
 def same_misfit(observation: Observation, one: Attempt, other: Attempt) -> bool:
-    """Return whether two attempts are equally far off the data."""
-    least, most = sorted(_misfit(observation, attempt) for attempt in (one, other))
-    return most < (1 + SAME_MISFIT) * least
+    """Return whether two attempts are equally far off the data, by more than the noise is."""
+    squares = np.array([_misfit(observation, attempt) ** 2 for attempt in (one, other)])
+    least, most = np.sqrt(np.sort(np.maximum(squares - 1, 0.0)))
+    return bool(most < (1 + SAME_MISFIT) * least)
 
 
 def _misfit(observation: Observation, attempt: Attempt) -> float:
+    """Return the root mean square of what the answer leaves of the data, in their errors."""
     return float(np.sqrt(squared_misfits(observation, attempt.data).mean()))
