@@ -19,7 +19,7 @@ import pandas as pd
 from disorder_landscape.chain import MODELS, shipped_model
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset.realizations import realization
-from disorder_landscape.inference.attempt import best
+from disorder_landscape.inference.attempt import Attempt, best
 from disorder_landscape.inference.first_guess import network_labels
 from disorder_landscape.inference.inversion import invert
 from disorder_landscape.inference.measurement import Measurement, empty_measurement
@@ -126,16 +126,21 @@ def measured(
 class Inverted:
     """What an inversion has come to."""
 
-    answer: Gaussian
+    chosen: Attempt
     outcome: dict[str, object]
     """`spread`, the answer's own deviation of V in meV; `excess`, `verdict`, `attempts`, `rounds`,
     `seconds`."""
 
+    @property
+    def answer(self) -> Gaussian:
+        """The normal distribution that describes it."""
+        return self.chosen.answer
 
-def inverted(observation: Observation, network: TrainedModel | None, index: int) -> Inverted:
+
+def inverted(observation: Observation, network: TrainedModel | None, seed: int) -> Inverted:
     """Invert a measurement, and take the time."""
     begun = time.perf_counter()
-    attempts = invert(observation, network, seed=index)
+    attempts = invert(observation, network, seed)
     seconds = time.perf_counter() - begun
     chosen = best(attempts)
     outcome: dict[str, object] = {
@@ -146,7 +151,7 @@ def inverted(observation: Observation, network: TrainedModel | None, index: int)
         "rounds": sum(attempt.rounds for attempt in attempts),
         "seconds": seconds,
     }
-    return Inverted(chosen.answer, outcome)
+    return Inverted(chosen, outcome)
 
 
 def inversion_row(task: Task) -> dict[str, object]:

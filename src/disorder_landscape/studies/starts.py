@@ -1,7 +1,7 @@
 """The same measurement inverted from two starts: the network's guess, and the prior alone.
 
 If a conductance profile has one disorder landscape, both end in the same answer, whatever network
-there is. `Task` is that of `studies.inversions`.
+there is. `Task` is that of `studies.inversions`. Seeds differ: each start has attempts of its own.
 """
 
 from __future__ import annotations
@@ -9,6 +9,8 @@ from __future__ import annotations
 from disorder_landscape.studies.inversions import Task, fresh_wire, inverted, network_of, rounded
 
 STARTS = ("network", "prior")
+OTHER_SEEDS = 2**20
+"""Added to the seed of an inversion from the prior alone."""
 
 
 def starts_row(task: Task) -> dict[str, object]:
@@ -23,8 +25,8 @@ def starts_row(task: Task) -> dict[str, object]:
     """
     observation, truth = fresh_wire(task)
     distance = observation.unknowns.site_distance
-    networks = network_of(task.model, task.noise), None
-    found = [inverted(observation, network, task.index) for network in networks]
+    from_network = inverted(observation, network_of(task.model, task.noise), task.index)
+    found = from_network, inverted(observation, None, OTHER_SEEDS + task.index)
     row: dict[str, object] = {"model": task.model, "noise": task.noise, "index": task.index}
     row["apart"] = distance(found[0].answer.mean, found[1].answer.mean)
     for start, one in zip(STARTS, found, strict=True):

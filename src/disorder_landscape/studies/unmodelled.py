@@ -10,15 +10,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-import xarray as xr
 
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.inference.measurement import Measurement, empty_measurement, simulated
 from disorder_landscape.inference.observation import Observation, noise_of_channels
 from disorder_landscape.inference.posterior import predictive_p
 from disorder_landscape.inference.unknowns import Unknowns
-from disorder_landscape.inference.verification import verify
-from disorder_landscape.physics.labels import AXES, CONDUCTANCES
 from disorder_landscape.physics.parameters import FloatArray, Nanowire
 from disorder_landscape.studies.inversions import SEED, inverted, measured, network_of, rounded
 
@@ -39,9 +36,6 @@ OTHER_BARRIERS = (25.0, 10.0)
 """Of the measurements that check the answer, left and right in meV."""
 EVERY = 2
 """Of the points of μ and B, how many they are apart."""
-CONTROLS = 19
-SHIFTS = np.linspace(-0.03, 0.03, 7)
-"""With how many wires of wrong disorder they are compared, and which means of V are tried."""
 MEMBERS = 100
 """Of the answer, which predict those measurements."""
 KEYS = ["model", "noise", "kind", "index"]
@@ -95,8 +89,7 @@ def unmodelled_row(task: Task) -> dict[str, object]:
     -------
     dict
         As `inversion_row`; besides, `departure`, the root-mean-square change of the conductances in
-        units of the noise; `p_controls`, the p-value of `verify`; `p_predictive` that of
-        `predictive_p`, both at OTHER_BARRIERS.
+        units of the noise; `p_predictive`, the p-value of `predictive_p` at OTHER_BARRIERS.
     """
     network = network_of(task.model, task.noise)
     config = network.config.dataset.model_copy(update={"seed": SEED})
@@ -118,7 +111,7 @@ def unmodelled_row(task: Task) -> dict[str, object]:
         measured(other_settings, other_G, task.noise, task.index, 3), unknowns, noise
     )
     rng = np.random.default_rng([SEED, task.index, 4])
-    predicted = further.simulate(found.answer.draw(rng, MEMBERS))
+    predicted = further.simulate(found.chosen.draw(rng, MEMBERS))
     return rounded(
         {
             "model": task.model,
@@ -128,26 +121,7 @@ def unmodelled_row(task: Task) -> dict[str, object]:
             "departure": float(np.sqrt((change**2).mean()) / task.noise),
             "site_error": float(np.sqrt(((unknowns.potential(mean) - true.potential) ** 2).mean())),
             "alpha_error": abs(unknowns.alpha(mean) - one.alpha),
-            "p_controls": _p_of_controls(unknowns, mean, further, task),
             "p_predictive": predictive_p(predicted, further.data, further.variance, rng),
             **found.outcome,
         }
     )
-
-
-def _p_of_controls(unknowns: Unknowns, mean: FloatArray, further: Observation, task: Task) -> float:
-    m = further.measurement
-    prediction = xr.Dataset(
-        {
-            "potential": ("site", unknowns.potential(mean)),
-            "alpha": float(unknowns.alpha(mean)),
-            "components": ("component", unknowns.components(mean)),
-        }
-    )
-    dataset = xr.Dataset(
-        {name: (AXES, m.G[..., c]) for c, name in enumerate(CONDUCTANCES)},
-        coords={axis: getattr(m, axis) for axis in AXES},
-        attrs={"theta": m.theta, "barrier": m.barrier, "temperature": m.temperature},
-    )
-    found = verify(prediction, dataset, task.noise, CONTROLS, SEED, unknowns.config, shifts=SHIFTS)
-    return float(found["p_value"])
