@@ -20,7 +20,14 @@ from scipy.stats import kstest, norm, uniform
 from tqdm import tqdm
 
 from disorder_landscape.chain import MODELS
-from disorder_landscape.claims.inversions import COVERAGE, INVERSIONS, coverage, deviations
+from disorder_landscape.claims.inversions import (
+    COVERAGE,
+    INVERSIONS,
+    coverage,
+    deviations,
+    joint_coverage,
+    joint_quantiles,
+)
 from disorder_landscape.dataset.store import provenance
 from disorder_landscape.files import read_json, replacing, write_json
 from disorder_landscape.inference.attempt import best
@@ -35,12 +42,25 @@ LENGTH = 256
 
 
 def calibration(table: pd.DataFrame) -> dict[str, object]:
-    """Return coverage, and the p-value that the quantiles are uniform, for each model and noise."""
+    """Return coverage, and the p-value that the quantiles are uniform, for each model and noise.
+
+    Of each unknown alone, and of all at once.
+    """
     found: dict[str, object] = {}
     for (model, noise), some in table[table["noise"] > 0].groupby(["model", "noise"]):
-        inside = dict(zip(map(str, COVERAGE), coverage(some).round(4).tolist(), strict=True))
-        p = float(kstest(norm.cdf(deviations(some)), "uniform").pvalue)
-        found[f"{model}, {noise:g}"] = {"wires": len(some), "p": round(p, 4), "inside": inside}
+        quantiles = norm.cdf(deviations(some)), joint_quantiles(some)
+        inside = [
+            dict(zip(map(str, COVERAGE), parts.round(4).tolist(), strict=True))
+            for parts in (coverage(some), joint_coverage(some))
+        ]
+        p = [round(float(kstest(one, "uniform").pvalue), 4) for one in quantiles]
+        found[f"{model}, {noise:g}"] = {
+            "wires": len(some),
+            "p": p[0],
+            "inside": inside[0],
+            "joint_p": p[1],
+            "joint_inside": inside[1],
+        }
     return found
 
 

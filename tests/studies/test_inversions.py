@@ -15,6 +15,7 @@ from disorder_landscape.claims.inversions import (
     accuracy_table,
     components_table,
     coverage,
+    joint_coverage,
     uniqueness_table,
     unmodelled_table,
 )
@@ -41,6 +42,9 @@ def row(index, model=FIVE, noise=0.01, **changes):
         "spread": 0.001,
         "network_scaled_error": 0.05,
         "scaled_error": 1e-4,
+        "network_alpha_error": 0.02,
+        "alpha_error": 0.001,
+        "mahalanobis": (z**2).sum(),
         "verdict": CONVERGED,
         "seconds": 10.0,
         "deviations": " ".join(f"{one:.3f}" for one in z),
@@ -158,6 +162,19 @@ def test_claims_of_uniqueness(information, tmp_path):
 def test_coverage_of_normal_deviations_is_nominal():
     table = pd.DataFrame([row(i) for i in range(2000)])
     np.testing.assert_allclose(coverage(table), [0.5, 0.8, 0.95], atol=0.02)
+
+
+@pytest.mark.parametrize(("too_small", "lost"), [(1.0, 0.0), (2.0, 0.12)])
+def test_joint_coverage_sees_one_axis_that_is_wrong(too_small, lost):
+    """… by a factor of two, where seven unknowns' own coverage is nearly nominal."""
+    z = np.random.default_rng(5).normal(size=(2000, 7))
+    z[:, 6] *= too_small
+    texts = [" ".join(f"{one:.3f}" for one in wire) for wire in z]
+    table = pd.DataFrame({"deviations": texts, "mahalanobis": (z**2).sum(axis=1)})
+    nominal = np.array([0.5, 0.8, 0.95])
+    assert np.all(abs(coverage(table) - nominal) < 0.06)
+    missing = nominal - joint_coverage(table)
+    assert np.all(missing > lost) if lost else np.all(abs(missing) < 0.03)
 
 
 @pytest.fixture(scope="module")
