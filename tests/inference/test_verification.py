@@ -8,7 +8,7 @@ import xarray as xr
 
 import disorder_landscape as dl
 from disorder_landscape import ArgumentError, Nanowire, conductance
-from disorder_landscape.config import DatasetConfig
+from disorder_landscape.config import DatasetConfig, WireConfig
 from disorder_landscape.inference.comparison import scores, table
 from disorder_landscape.inference.verification import control_wires
 from disorder_landscape.physics.disorder import cosine_components
@@ -126,12 +126,35 @@ def test_noise_is_seen_as_such():
     assert blind.attrs["verdict"].startswith("Nothing can be said")
 
 
+def test_noise_is_that_which_each_measurement_states():
+    measured = measure(TRUE, noise=0.05)
+    each = [0.05, 0.05, 0.01, 0.02]
+    given = [measured.assign_attrs(noise=0.05), measured.assign_attrs(noise=each), measured]
+    found = verify(prediction_of(TRUE), *given)
+    np.testing.assert_array_equal(found["noise"], [4 * [0.05], each, 4 * [0.0]])
+    assert "noise: 0, 0.01, 0.02, 0.05 e²/h" in "\n".join(
+        table(found.assign_coords(measurement=list("abc")))
+    )
+    same = verify(prediction_of(TRUE), measured, noise=dict(zip(CONDUCTANCES, each, strict=True)))
+    assert same["score"] == verify(prediction_of(TRUE), given[1])["score"]
+
+
+def test_leads_are_those_of_the_model():
+    leads = WireConfig(lead_mu=10.0)
+    config = DatasetConfig(realizations=1, sites=SITES, components=COMPONENTS, wire=leads)
+    wire = replace(TRUE, lead_mu=10.0)
+    predicted = prediction_of(TRUE, TRUE.potential.mean())
+    found = verify(predicted, measure(wire), config=config, shifts=[0.0])
+    assert found["mismatch"].max() < 1e-9
+
+
 def test_channels_of_noise_have_no_weight():
     typical = np.array([[0.2, 0.2, 0.01, 0.01]])
     squares = np.array([[0.0, 0.0, 1e-4, 1e-4]])
-    assert scores(squares, typical, 0.01) == 0
-    assert scores(squares, typical, 0.0) == pytest.approx(np.sqrt(0.5))
-    assert scores(typical**2, typical, 0.0) == pytest.approx(1.0)
+    none = np.zeros((1, 4))
+    assert scores(squares, typical, none + 0.01) == 0
+    assert scores(squares, typical, none) == pytest.approx(np.sqrt(0.5))
+    assert scores(typical**2, typical, none) == pytest.approx(1.0)
 
 
 def test_the_table_says_it_all():

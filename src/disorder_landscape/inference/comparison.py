@@ -19,12 +19,12 @@ LEAST_SIGNAL = 0.5
 _TINY = np.finfo(float).tiny
 
 
-def weights(typical: FloatArray, noise: float) -> FloatArray:
+def weights(typical: FloatArray, noise: FloatArray) -> FloatArray:
     """Return which part of typical mismatches is not noise, shape (measurement, channel)."""
     return np.asarray(np.clip(1 - (noise / np.maximum(typical, _TINY)) ** 2, 0.0, 1.0))
 
 
-def scores(squares: FloatArray, typical: FloatArray, noise: float) -> FloatArray:
+def scores(squares: FloatArray, typical: FloatArray, noise: FloatArray) -> FloatArray:
     """Return root mean squares of mismatches in units of typical ones, weighted.
 
     Parameters
@@ -33,7 +33,7 @@ def scores(squares: FloatArray, typical: FloatArray, noise: float) -> FloatArray
         Squared mismatches in (e²/h)².
     typical : array, shape (measurement, channel)
         Mismatches of wrong disorder in e²/h.
-    noise : float
+    noise : array, shape (measurement, channel)
         In e²/h.
 
     Returns
@@ -45,10 +45,11 @@ def scores(squares: FloatArray, typical: FloatArray, noise: float) -> FloatArray
     return np.asarray(np.sqrt((relative * weight).sum((-2, -1)) / max(weight.sum(), _TINY)))
 
 
-def comparison(mismatch: FloatArray, shift: FloatArray, noise: float) -> xr.Dataset:
+def comparison(mismatch: FloatArray, shift: FloatArray, noise: FloatArray) -> xr.Dataset:
     """Return what `verify` does, from mismatches (wire, measurement, channel) and shifts (wire,).
 
-    The first wire is the predicted one, the others are controls.
+    The first wire is the predicted one, the others are controls; noise has the shape (measurement,
+    channel).
     """
     typical = np.median(mismatch[1:], axis=0)
     score = scores(mismatch**2, typical, noise)
@@ -58,6 +59,7 @@ def comparison(mismatch: FloatArray, shift: FloatArray, noise: float) -> xr.Data
     data = {
         "mismatch": (channels, mismatch[0], {"units": "e^2/h"}),
         "control_mismatch": (("control", *channels), mismatch[1:], {"units": "e^2/h"}),
+        "noise": (channels, noise, {"units": "e^2/h"}),
         "ratio": (channels, mismatch[0] / np.maximum(typical, _TINY), {"units": "1"}),
         "score": ((), score[0], {"units": "1"}),
         "control_score": ("control", score[1:], {"units": "1"}),
@@ -65,7 +67,7 @@ def comparison(mismatch: FloatArray, shift: FloatArray, noise: float) -> xr.Data
         "control_shift": ("control", shift[1:], {"units": "meV"}),
         "p_value": ((), p, {"units": "1"}),
     }
-    attrs = {"noise": noise, "verdict": _verdict(score[0], as_close, controls, p)}
+    attrs = {"verdict": _verdict(score[0], as_close, controls, p)}
     if weights(typical, noise).max() < LEAST_SIGNAL:
         attrs["verdict"] = "Nothing can be said: the noise hides what wrong disorder would change."
     return xr.Dataset(data, coords={"channel": list(CONDUCTANCES)}, attrs=attrs)
@@ -101,7 +103,8 @@ def table(result: xr.Dataset) -> list[str]:
                 f"{wrong[:, i, c].min():9.5f} {result['ratio'].to_numpy()[i, c]:7.3f}"
             )
     shift = 1e3 * float(result["shift"])
-    lines.append(f"mean of V that fits best: {shift:g} µeV; noise: {result.attrs['noise']:g} e²/h")
+    noise = ", ".join(f"{one:g}" for one in np.unique(result["noise"]))
+    lines.append(f"mean of V that fits best: {shift:g} µeV; noise: {noise} e²/h")
     lines.append(str(result.attrs["verdict"]))
     if "p_members" in result:
         lines.append(of_members(float(result["p_members"])))

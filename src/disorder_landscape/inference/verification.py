@@ -16,14 +16,15 @@ any: they are simulated sooner.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from disorder_landscape.arguments import grid_in, number_in, require, whole_number_in
+from disorder_landscape.arguments import grid_in, require, whole_number_in
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.inference.comparison import (
     LEAST_MEMBERS,
@@ -32,7 +33,11 @@ from disorder_landscape.inference.comparison import (
     scores,
 )
 from disorder_landscape.inference.measurement import Measurement, measurement_of, simulated
-from disorder_landscape.inference.observation import errors_variance
+from disorder_landscape.inference.observation import (
+    errors_variance,
+    noise_of_channels,
+    stated_noise,
+)
 from disorder_landscape.inference.posterior import predictive_p
 from disorder_landscape.physics.disorder import MEAN_STD, disorder_realization
 from disorder_landscape.physics.labels import CONDUCTANCES
@@ -49,7 +54,7 @@ CONTROLS = 50
 def verify(
     prediction: xr.Dataset,
     measurements: xr.Dataset | Sequence[xr.Dataset],
-    noise: float = 0.0,
+    noise: float | Mapping[str, float] | None = None,
     controls: int = CONTROLS,
     seed: int = 0,
     config: DatasetConfig | None = None,
@@ -66,8 +71,9 @@ def verify(
     measurements : Dataset or sequence of them
         G_LL … G_RL in e²/h with dims (mu, B, bias) in any order, and the attributes theta
         (radians), barrier (left and right, meV) and temperature (K), as `conductance` returns them.
-    noise : float
-        Standard deviation of the measured conductances' errors in e²/h.
+    noise : float or mapping
+        Standard deviation of the measured conductances' errors in e²/h, or of each channel's. By
+        default the attribute noise of each measurement, or none.
     controls : int
         How many wires with random disorder; at least 19, so that p can fall to 0.05.
     seed : int
@@ -102,17 +108,26 @@ def verify(
     given = [measurements] if isinstance(measurements, xr.Dataset) else list(measurements)
     require(bool(given), "measurement", "be one Dataset or more", "there is none")
     measured = [measurement_of(dataset) for dataset in given]
-    noise = number_in("noise", noise, 0.0, 1.0, "e²/h")
+    stated = [dataset.attrs if noise is None else {"noise": noise} for dataset in given]
+    errors = np.array([_noise(attrs) for attrs in stated])
     controls = whole_number_in("controls", controls, round(1 / SIGNIFICANCE) - 1, 10_000)
     seed = whole_number_in("seed", seed, 0, 2**63)
     tried = grid_in("shifts", shifts, -1.0, 1.0, "meV")
     predicted = _predicted_wire(prediction)
     model = _disorder_model(prediction, predicted, config)
-    wires = [predicted, *control_wires(model, controls, seed)]
-    squares, shift = _mean_squares(wires, measured, tried, noise, progress)
-    result = comparison(np.sqrt(squares), shift, noise)
+    lead_mu = model.wire.lead_mu
+    controlled = [predicted, *control_wires(model, controls, seed)]
+    wires = [replace(wire, lead_mu=lead_mu) for wire in controlled]
+    squares, shift = _mean_squares(wires, measured, tried, errors, progress)
+    result = comparison(np.sqrt(squares), shift, errors)
     if _is_inversion(prediction):
-        p = _p_of_members(prediction, measured, noise, np.random.default_rng([seed, 2]))
+        members = [
+            replace(wires[0], potential=V, alpha=alpha)
+            for V, alpha in zip(
+                prediction["potential"].to_numpy(), prediction["alpha"].to_numpy(), strict=True
+            )
+        ]
+        p = _p_of_members(members, measured, errors, np.random.default_rng([seed, 2]))
         result["p_members"] = ((), p, {"units": "1"})
     return result
 
@@ -122,20 +137,31 @@ def _is_inversion(prediction: xr.Dataset) -> bool:
 
 
 def _p_of_members(
-    prediction: xr.Dataset, measured: Sequence[Measurement], noise: float, rng: np.random.Generator
+    members: Sequence[Nanowire],
+    measured: Sequence[Measurement],
+    noise: FloatArray,
+    rng: np.random.Generator,
 ) -> float:
     """Return `predictive_p` of an inversion's members, which know the mean of V."""
-    potential = prediction["potential"].to_numpy()
-    if len(potential) < LEAST_MEMBERS:
+    if len(members) < LEAST_MEMBERS:
         return np.nan
-    members = list(zip(potential, prediction["alpha"].to_numpy(), strict=True))
-    shown = []
-    for m in measured:
-        wires = [Nanowire(V, alpha=float(alpha), barrier=m.barrier) for V, alpha in members]
-        shown.append(simulated(wires, m).reshape(len(wires), -1))
+    shown = [
+        simulated([replace(wire, barrier=m.barrier) for wire in members], m).reshape(
+            len(members), -1
+        )
+        for m in measured
+    ]
     data = np.concatenate([m.G.ravel() for m in measured])
-    variance = np.full(data.size, errors_variance(noise))
-    return predictive_p(np.concatenate(shown, axis=1), data, variance, rng)
+    variance = [
+        np.broadcast_to(errors_variance(errors), m.G.shape).ravel()
+        for errors, m in zip(noise, measured, strict=True)
+    ]
+    return predictive_p(np.concatenate(shown, axis=1), data, np.concatenate(variance), rng)
+
+
+def _noise(attrs: Mapping[Any, Any]) -> FloatArray:
+    """Return the noise of each channel that a measurement states, or none, in e²/h."""
+    return noise_of_channels(stated_noise(attrs) if "noise" in attrs else 0.0)
 
 
 def _predicted_wire(prediction: xr.Dataset) -> Nanowire:
@@ -186,7 +212,7 @@ def _mean_squares(
     wires: Sequence[Nanowire],
     measured: Sequence[Measurement],
     shifts: FloatArray,
-    noise: float,
+    noise: FloatArray,
     progress: Progress | None,
 ) -> tuple[FloatArray, FloatArray]:
     """Return mean squared differences in (e²/h)², (wire, measurement, channel), and the shifts."""
@@ -208,11 +234,11 @@ def _mean_squares(
     squares = np.empty((len(wires), len(measured), len(CONDUCTANCES)))
     best = np.empty(len(wires))
     for w, wire in enumerate(wires):
-        coarse = shifts[scores(found[w], typical, noise).argmin()]
+        coarse = shifts[scores(found[w], typical, noise[deciding]).argmin()]
         tried = np.append(shifts, coarse + finer)
         further = _of_wire(wire, first, coarse + finer, told)
         at_tried = np.concatenate([found[w], further])
-        chosen = scores(at_tried, typical, noise).argmin()
+        chosen = scores(at_tried, typical, noise[deciding]).argmin()
         best[w], squares[w, deciding] = tried[chosen], at_tried[chosen]
         others = [m for m, decides in zip(measured, deciding, strict=True) if not decides]
         squares[w, ~deciding] = _of_wire(wire, others, best[w : w + 1], told)[0]
