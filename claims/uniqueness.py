@@ -41,8 +41,9 @@ def main() -> None:
         )
     ]
     for one in tqdm(missing(settings, table, KEYS), unit=" settings"):
-        table = pd.concat([table, pd.DataFrame(information_rows(one))], ignore_index=True)
-        write_rows(table.round({"spread": 7, "prior_spread": 7}), path, [*KEYS, "noise"], COMMAND)
+        rows = pd.DataFrame(information_rows(one)).round({"spread": 7, "prior_spread": 7})
+        table = pd.concat([table, rows], ignore_index=True)
+        write_rows(table, path, [*KEYS, "noise"], COMMAND)
     write_rows(table, path, [*KEYS, "noise"], COMMAND)
 
 

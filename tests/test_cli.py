@@ -230,7 +230,8 @@ def test_a_folder_that_cannot_be_made_is_one_sentence(monkeypatch, capsys, tmp_p
 
 
 def test_every_command_helps_with_an_example(monkeypatch, capsys):
-    commands = ["simulate", "generate", "status", "train", "evaluate", "predict", "verify", "bench"]
+    commands = ["simulate", "generate", "status", "train", "evaluate", "predict"]
+    commands += ["infer", "verify", "study", "bench"]
     for command in commands:
         code, out, _ = landscape(monkeypatch, capsys, command, "--help")
         assert code == 0
@@ -256,9 +257,12 @@ def test_infer_writes_a_result_and_a_picture_without_the_network(monkeypatch, ca
     measured.to_netcdf(wire, engine="h5netcdf")
     command = ["infer", wire, "--model", shipped_model(FIVE), "-o", output, "--plot", plot]
     code, _, said = landscape(monkeypatch, capsys, *command)
-    assert code in (0, None)  # the network is left out, because a channel is missing
+    assert (code, "--from-prior" in said) == (2, True)
+    code, _, said = landscape(monkeypatch, capsys, *command, "--from-prior")
+    assert code in (0, None)
     result = xr.load_dataset(output, engine="h5netcdf")
-    assert result.attrs["start"].startswith("the prior, because the network needs all")
+    assert result.attrs["start"] == "the prior"
+    assert np.isnan(result["misfit"].sel(channel="G_RL"))
     assert plot.stat().st_size > 10_000
     assert not output.with_name("out.nc.unfinished.json").exists()
     code, _, said = landscape(monkeypatch, capsys, "infer", wire, "--model", tmp_path, "-o", wire)

@@ -24,7 +24,7 @@ def test_notebook(path: Path, monkeypatch, capsys):
     assert len(plt.get_fignums()) == 2  # left open, so that a notebook shows them
     plt.close("all")
     said = capsys.readouterr().out
-    assert "converged after" in said
+    assert "\nconverged after" in f"\n{said}"
     assert "all members agree at" in said
     off = {
         line.split(":")[0]: float(line.split()[4]) for line in said.splitlines() if "off by" in line

@@ -282,10 +282,10 @@ def infer(
             measured, model, errors, not from_prior, members, seed, None, unfinished, told
         )
     write_dataset(result, output, made_here(), may_lack=["misfit"])  # of channels without data
-    unfinished.unlink(missing_ok=True)
     if plot is not None:
         usual = {name: result.attrs[name] for name in ("theta", "barrier", "temperature")}
         plot_inference(result, measurement_of(measured, usual, complete=False), plot)
+    unfinished.unlink(missing_ok=True)
     print("\n".join(summary(result)))
     print(f"wrote {output}" + (f" and {plot}" if plot else ""))
 
@@ -303,7 +303,13 @@ def verify(
         Path | None,
         typer.Option(help="Folder of the model that predicted: its disorder is the control."),
     ] = None,
-    noise: Annotated[float, typer.Option(help="Error of the measured G in e^2/h.")] = 0.0,
+    noise: Annotated[
+        str | None,
+        typer.Option(
+            help="Error of the measured G in e^2/h, one number or one for each channel; by "
+            "default the one that each measurement states, or none."
+        ),
+    ] = None,
     controls: Annotated[int, typer.Option(help="Wires with wrong disorder, 19 or more.")] = 50,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the wrong disorder.")] = 0,
     shifts: Annotated[
@@ -325,6 +331,7 @@ def verify(
     from disorder_landscape.dataset.store import read_dataset, write_dataset
     from disorder_landscape.files import check_netcdf
     from disorder_landscape.inference.comparison import table
+    from disorder_landscape.inference.report import parse_noise
     from disorder_landscape.inference.verification import verify as compare
     from disorder_landscape.learning.model import load_model_config
     from disorder_landscape.physics.labels import CONDUCTANCES
@@ -339,13 +346,14 @@ def verify(
     predicted = read_dataset(prediction, ("potential", "alpha"))
     measured = [read_dataset(path, CONDUCTANCES) for path in measurements]
     tried = parse_grid("shifts", shifts)
+    errors = None if noise is None else parse_noise(noise)
     with tqdm(unit=" settings", delay=1, desc="verify") as bar:
 
         def progress(done: int, in_all: int) -> None:
             bar.total = in_all
             bar.update(done)
 
-        result = compare(predicted, measured, noise, controls, seed, config, tried, progress)
+        result = compare(predicted, measured, errors, controls, seed, config, tried, progress)
     result = result.assign_coords(measurement=[str(path) for path in measurements])
     if output is not None:
         write_dataset(result, output, made_here(), may_lack=["p_members"])  # where they are few

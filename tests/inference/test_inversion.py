@@ -39,6 +39,7 @@ LABELS = LabelScaler(("c_1", "c_2", "alpha"), np.zeros(3), np.ones(3))
 MODEL = TrainedModel(None, LABELS, None, Config(dataset=DATASET))
 """A disorder model without a network."""
 TRUE = realization(DATASET, 3)
+SOON = InversionSettings(attempts=2, rounds=RoundSettings(rounds=4))
 
 
 def measure(wire, noise=NOISE, config=DATASET, **options):
@@ -114,7 +115,8 @@ def test_settings_are_the_measurements_own(measured):
     result = infer(measure(wire, temperature=0.04))
     assert result.attrs["verdict"] == CONVERGED
     assert site_error(result) < 0.02
-    G = measured.assign_attrs({})
+    G = measured.drop_attrs()
+    assert "barrier" not in G.attrs
     assert infer(G).attrs["barrier"] == (15.0, 15.0)
 
 
@@ -122,11 +124,15 @@ def test_settings_are_the_measurements_own(measured):
 def test_what_the_model_cannot_explain_is_flagged(unmodelled):
     more_components = realization(DATASET.model_copy(update={"components": 12}), 3)
     wire = {"gap": replace(TRUE.wire, delta0=0.096), "components": more_components.wire}[unmodelled]
-    soon = InversionSettings(attempts=2, rounds=RoundSettings(rounds=4))
-    result = infer(measure(wire), settings=soon)
+    result = infer(measure(wire), settings=SOON)
     assert result.attrs["verdict"] in (NOT_DESCRIBED, NOT_CONVERGED)
     assert result.attrs["attempts"] == 2
     assert result.attrs["excess"] > 10
+
+
+def test_what_it_explains_is_not(measured):
+    """… with as few rounds."""
+    assert infer(measured, settings=SOON).attrs["verdict"] == CONVERGED
 
 
 def test_much_noise_makes_the_answer_a_population(tmp_path):
@@ -231,6 +237,7 @@ def test_the_seed_decides(measured, inferred):
         (lambda G: G.isel(mu=slice(5)), {"network": True}, "--from-prior"),
         (lambda G: G.assign_attrs(g=14.7), {}, "g must be 25, .* the measurement's is 14.7"),
         (lambda G: G.assign_attrs(delta0=0.2), {}, "delta0 must be 0.12"),
+        (lambda G: G.assign_attrs(alpha="large"), {}, "alpha must be a number"),
         (lambda G: G.assign_attrs(barrier=[15.0, np.nan]), {}, "barrier must be a number"),
         (lambda G: G.assign_attrs(barrier=[15.0, 1e9]), {}, "barrier must be a number"),
         (lambda G: G.assign(G_LL=G["G_LL"].assign_attrs(units="2e^2/h")), {}, "G_LL are 2e.2/h"),
@@ -248,11 +255,42 @@ def test_bad_input_is_refused_in_one_sentence(measured, change, options, message
         dl.infer(G, MODEL, **options)
 
 
+def test_a_measurement_of_another_alpha_is_no_data_of_a_model_that_knows_it(measured):
+    known = DATASET.model_copy(update={"alpha_range": (8.0, 8.0)})
+    model = replace(MODEL, config=Config(dataset=known))
+    message = "alpha must be 8 meV nm, which this model takes for known, .* measurement's is 7"
+    with pytest.raises(ArgumentError, match=message):
+        dl.infer(measured.assign_attrs(alpha=7.0), model, NOISE, network=False)
+
+
+def test_the_network_guesses_if_nothing_is_missing_of_what_it_is_shown(measured, tmp_path):
+    """It knows every second μ; a number is missing, first between these, then among them."""
+    network = keras.Sequential(
+        [keras.Input((3, 6, 3, 4)), keras.layers.Flatten(), keras.layers.Dense(len(LABELS.names))]
+    )
+    fewer = DATASET.model_copy(update={"mu_points": 3, "mu_max": DATASET.mu[4]})
+    model = replace(MODEL, network=network, config=Config(dataset=fewer))
+
+    def interrupt(step):
+        raise KeyboardInterrupt
+
+    for missing, guessed in (1, True), (2, False):
+        checkpoint = tmp_path / f"{missing}.json"
+        G = measured.assign(G_LL=measured["G_LL"].where(measured["mu"] != measured["mu"][missing]))
+        with pytest.raises(KeyboardInterrupt):
+            dl.infer(G, model, NOISE, checkpoint=checkpoint, told=interrupt)
+        (notes,) = json.loads(checkpoint.read_text()).values()
+        assert ("guess" in notes) == guessed
+
+
 class FirstNumbers:
     """Instead of a network: the first numbers of its input."""
 
     def predict_on_batch(self, x):
         return x.reshape(len(x), -1)[:, :3]
+
+    def get_weights(self):
+        return []
 
 
 def test_the_network_is_shown_its_own_points_of_a_larger_grid():

@@ -13,7 +13,7 @@ _MUST = "be the file of an interrupted inversion (delete it to start anew)"
 
 
 class Checkpoint:
-    """Results by name, each of which is calculated once, however often the run is interrupted.
+    """Results by name, which an interrupted run does not calculate again.
 
     Parameters
     ----------

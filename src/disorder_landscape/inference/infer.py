@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from disorder_landscape.arguments import ArgumentError, require, whole_number_in
+from disorder_landscape.arguments import ArgumentError, number_in, require, whole_number_in
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.inference.attempt import Attempt, best
 from disorder_landscape.inference.checkpoint import Checkpoint
@@ -30,7 +31,7 @@ from disorder_landscape.learning.model import (
     points_of_grid,
 )
 from disorder_landscape.physics.labels import AXES, CONDUCTANCES, labelled
-from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.physics.parameters import PARAMETER_RANGES, FloatArray
 from disorder_landscape.physics.topology import topological_visibility
 
 MEMBERS = 64
@@ -61,7 +62,7 @@ def infer(
         Conductances of one wire in e²/h, dims (mu, B, bias) in any order. The attributes
         temperature (K), barrier (left and right, meV) and theta (radians) are the model's where
         they are missing. Conductances may be missing, or NaN here and there: what is there is
-        explained, and the start is then the disorder model's prior, because the network needs all.
+        explained, and if some of the network's grid are, the start is the disorder model's prior.
     model : path or TrainedModel
         Folder of a trained model, which also says what disorder to expect.
     noise : float or mapping
@@ -93,29 +94,30 @@ def infer(
     ------
     ArgumentError
         If the measurement lacks points of the network's grid, is not one wire's or in siemens, if
-        the noise is negative, or another argument is out of range.
+        the noise is negative, another argument is out of range, or α is not what the model knows.
     """
     whole_config = (
         model.config if isinstance(model, TrainedModel) else load_model_config(Path(model))
     )
     config = whole_config.dataset
     measurement = measurement_of(G, settings_of(config), complete=False)
+    _check_alpha(config, G.attrs)
     errors = noise_of_channels(stated_noise(G.attrs) if noise is None else noise)
     members = whole_number_in("members", members, 2, 10_000)
     require(members % 2 == 0, "members", "be an even number", f"it is {members}")
     seed = whole_number_in("seed", seed, 0, 2**31)
-    whole = bool(np.isfinite(measurement.G).all())
-    trained = None
-    if network and whole:
-        _check_grid(config, measurement)
+    trained, missing = None, False
+    if network:
+        missing = not np.isfinite(_seen_by_network(config, measurement)).all()
+    if network and not missing:
         trained = model if isinstance(model, TrainedModel) else load_model(model)
     observation = Observation(measurement, Unknowns(config), errors)
     start = "the prior" if trained is None else "the network's guess"
     word = word_heard(trained, observation)
     if word is not None:
         start = "the prior, with the network's word on each wire"
-    if network and not whole:
-        start += ", because the network needs all conductances and some are missing"
+    if missing:
+        start += ", because the network needs all conductances of its grid and some are missing"
     settings = settings or usual_settings(word)
     fingerprint = repr((whole_config, errors.tolist(), seed, settings, start)).encode()
     fingerprint += b"".join(np.asarray(value).tobytes() for value in vars(measurement).values())
@@ -142,14 +144,24 @@ def infer(
     return result
 
 
-def _check_grid(config: DatasetConfig, measurement: Measurement) -> None:
-    """Require that the network knows the grid of a measurement, or tell how to do without it."""
+def _check_alpha(config: DatasetConfig, attrs: Mapping[Any, Any]) -> None:
+    """Require that a measurement states no other α than that which the model takes for known."""
+    least, most = config.alpha_range
+    stated = number_in("alpha", attrs.get("alpha", least), *PARAMETER_RANGES["alpha"])
+    must = f"be {least:g} meV nm, which this model takes for known"
+    same = bool(np.isclose(stated, least))
+    require(least < most or same, "alpha", must, f"the measurement's is {stated:g}")
+
+
+def _seen_by_network(config: DatasetConfig, measurement: Measurement) -> FloatArray:
+    """Return the conductances on the network's grid, or tell how to do without the network."""
     try:
-        points_of_grid(config, vars(measurement), "measurement")
+        points = points_of_grid(config, vars(measurement), "measurement")
     except ArgumentError as error:
         name, must, but = error.parts
         without = "(network=False, or --from-prior, does without the network)"
         raise ArgumentError(name, must, f"{but} {without}") from None
+    return np.asarray(measurement.G[np.ix_(*points)])
 
 
 def _result(observation: Observation, chosen: Attempt, members: int, seed: int) -> xr.Dataset:
