@@ -7,6 +7,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import disorder_landscape as dl
 from disorder_landscape.arguments import ArgumentError
+from disorder_landscape.config import DatasetConfig
+from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.physics import energy_plan, finite_temperature
 from disorder_landscape.physics.disorder import disorder_realization, potential_from_components
 from disorder_landscape.physics.parameters import BIAS
@@ -70,6 +72,25 @@ def test_conductances_are_smooth_where_two_poles_meet_and_part():
     smooth = np.polynomial.polynomial.polyfit(u, along_B, 3)
     assert_allclose(along_B, np.polynomial.polynomial.polyval(u, smooth).T, rtol=0, atol=1e-6)
     assert estimate.max() < 2e-5
+
+
+@pytest.mark.slow
+def test_conductances_do_not_jump():
+    """Of 120,000 sets, at fields so near that they differ by no more than 10⁻⁶ e²/h."""
+    B = np.linspace(0.02, 0.8, 20)
+    twice, jumps = np.sort(np.concatenate([B, B + 1e-7])), []
+    for components in (5, 10):
+        config = DatasetConfig(realizations=1, components=components)
+        for first in range(900_000, 900_150, 10):
+            wires = [realization(config, index).wire for index in range(first, first + 10)]
+            G = exact_average(wires, np.linspace(0, 0.6, 20), twice, np.array(BIAS), 0.05)[0]
+            jumps.append(abs(G[:, :, 1::2] - G[:, :, ::2]).max(axis=(-1, -2)).ravel())
+    jump = np.concatenate(jumps)
+    shares = ", ".join(f"{(jump > limit).sum()} by more than {limit}" for limit in (1e-5, 1e-4))
+    print(f"\nof {jump.size} sets {shares}, by {jump.max():.1e} at most")
+    assert np.median(jump) < 1e-6
+    assert (jump > 1e-4).mean() < 1e-4
+    assert jump.max() < 5e-4
 
 
 def test_two_poles_that_have_just_left_the_imaginary_axis():
