@@ -10,7 +10,7 @@ from disorder_landscape.inference.attempt import Attempt, chi_square_excess
 from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.members import Members, log_density
 from disorder_landscape.inference.observation import Observation, noise_of_channels
-from disorder_landscape.inference.polish import linearise, polish, precision_of
+from disorder_landscape.inference.polish import laplace, linearise, polish, precision_of
 from disorder_landscape.inference.posterior import independence_chain, predictive_p
 from disorder_landscape.inference.regression import (
     RIDGES,
@@ -266,6 +266,22 @@ def test_polish_ends_at_the_posterior(linear):
     found = polish(linear, Gaussian(exact.mean + 0.01, 1e-4 * np.eye(SIZE)))
     np.testing.assert_allclose(found.mean, exact.mean, rtol=1e-6, atol=1e-9)
     np.testing.assert_allclose(found.covariance, exact.covariance, rtol=1e-5, atol=1e-12)
+
+
+def test_polish_ends_with_slopes_of_its_own_width(linear):
+    """From so wide a start that the first are others, even if it is at the optimum."""
+    waves = replace(linear, bend=0.05)
+    truth = Gaussian(UNKNOWNS.prior.mean, np.eye(SIZE))
+    waves = replace(waves, data=waves.simulate(truth.mean[None])[0])
+    narrow = replace(truth, covariance=1e-8 * np.eye(SIZE))
+    wide, expected = (
+        laplace(waves, truth.mean, linearise(waves, one)[1]) for one in (truth, narrow)
+    )
+    found = polish(waves, truth)
+    assert found.squared_distance(truth.mean) < 0.5
+    apart = [abs(one.covariance / expected.covariance - 1).max() for one in (wide, found)]
+    assert apart[0] > 0.3
+    assert apart[1] < 0.05
 
 
 def test_polish_follows_a_valley_that_bends():

@@ -80,10 +80,10 @@ def polish(
         gained = best - found
         if gained > 0:
             x, y, best = tried, shown, found
-        if gained < ENOUGH:
+        if gained < ENOUGH and number > 0:  # the first slopes are those of the start's width
             break
         slope = linearise(observation, replace(linear, mean=x))[1]
-        damping = 0.0 if damping <= first else damping / factor
+        damping = 0.0 if damping <= first or gained < ENOUGH else damping / factor
     return laplace(observation, x, slope)
 
 
