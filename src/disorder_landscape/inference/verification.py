@@ -108,8 +108,8 @@ def verify(
     given = [measurements] if isinstance(measurements, xr.Dataset) else list(measurements)
     require(bool(given), "measurement", "be one Dataset or more", "there is none")
     measured = [measurement_of(dataset) for dataset in given]
-    stated = [dataset.attrs if noise is None else {"noise": noise} for dataset in given]
-    errors = np.array([_noise(attrs) for attrs in stated])
+    stated = [_stated_noise(dataset.attrs) if noise is None else noise for dataset in given]
+    errors = np.array([noise_of_channels(one) for one in stated])
     controls = whole_number_in("controls", controls, round(1 / SIGNIFICANCE) - 1, 10_000)
     seed = whole_number_in("seed", seed, 0, 2**63)
     tried = grid_in("shifts", shifts, -1.0, 1.0, "meV")
@@ -159,9 +159,9 @@ def _p_of_members(
     return predictive_p(np.concatenate(shown, axis=1), data, np.concatenate(variance), rng)
 
 
-def _noise(attrs: Mapping[Any, Any]) -> FloatArray:
-    """Return the noise of each channel that a measurement states, or none, in e²/h."""
-    return noise_of_channels(stated_noise(attrs) if "noise" in attrs else 0.0)
+def _stated_noise(attrs: Mapping[Any, Any]) -> float | dict[str, float]:
+    """Return the noise that a measurement states, or none, in e²/h."""
+    return stated_noise(attrs) if "noise" in attrs else 0.0
 
 
 def _predicted_wire(prediction: xr.Dataset) -> Nanowire:
