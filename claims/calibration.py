@@ -48,19 +48,15 @@ def calibration(table: pd.DataFrame) -> dict[str, object]:
     """
     found: dict[str, object] = {}
     for (model, noise), some in table[table["noise"] > 0].groupby(["model", "noise"]):
-        quantiles = norm.cdf(deviations(some)), joint_quantiles(some)
-        inside = [
-            dict(zip(map(str, COVERAGE), parts.round(4).tolist(), strict=True))
-            for parts in (coverage(some), joint_coverage(some))
-        ]
-        p = [round(float(kstest(one, "uniform").pvalue), 4) for one in quantiles]
-        found[f"{model}, {noise:g}"] = {
-            "wires": len(some),
-            "p": p[0],
-            "inside": inside[0],
-            "joint_p": p[1],
-            "joint_inside": inside[1],
-        }
+        one: dict[str, object] = {"wires": len(some)}
+        for which, quantiles, parts in (
+            ("", norm.cdf(deviations(some)), coverage(some)),
+            ("joint_", joint_quantiles(some), joint_coverage(some)),
+        ):
+            inside = dict(zip(map(str, COVERAGE), parts.round(4).tolist(), strict=True))
+            one[f"{which}p"] = round(float(kstest(quantiles, "uniform").pvalue), 4)
+            one[f"{which}inside"] = inside
+        found[f"{model}, {noise:g}"] = one
     return found
 
 

@@ -54,6 +54,16 @@ def infer(G, noise=NOISE, **options):
     return dl.infer(G, MODEL, noise, network=False, **options)
 
 
+def small_network(mu_points):
+    """Of one layer, not trained."""
+    grid, labels = keras.Input((mu_points, 6, 3, 4)), keras.layers.Dense(len(LABELS.names))
+    return keras.Sequential([grid, keras.layers.Flatten(), labels])
+
+
+def interrupt_at_once(step):
+    raise KeyboardInterrupt
+
+
 def site_error(result, potential=TRUE.potential):
     return float(np.sqrt(((result["potential_mean"] - potential) ** 2).mean()))
 
@@ -183,19 +193,13 @@ def test_an_interrupted_run_goes_on(measured, inferred, tmp_path):
 
 def test_a_run_with_another_network_starts_anew(measured, tmp_path):
     checkpoint = tmp_path / "unfinished.json"
-    network = keras.Sequential(
-        [keras.Input((6, 6, 3, 4)), keras.layers.Flatten(), keras.layers.Dense(len(LABELS.names))]
-    )
+    network = small_network(6)
     model = replace(MODEL, network=network)
-
-    def interrupt(step):
-        raise KeyboardInterrupt
-
     for runs in 1, 1, 2:
         if runs == 2:  # as after another training with the same configuration
             network.set_weights([2 * weights for weights in network.get_weights()])
         with pytest.raises(KeyboardInterrupt):
-            dl.infer(measured, model, NOISE, checkpoint=checkpoint, told=interrupt)
+            dl.infer(measured, model, NOISE, checkpoint=checkpoint, told=interrupt_at_once)
         assert len(json.loads(checkpoint.read_text())) == runs
 
 
@@ -265,20 +269,13 @@ def test_a_measurement_of_another_alpha_is_no_data_of_a_model_that_knows_it(meas
 
 def test_the_network_guesses_if_nothing_is_missing_of_what_it_is_shown(measured, tmp_path):
     """It knows every second μ; a number is missing, first between these, then among them."""
-    network = keras.Sequential(
-        [keras.Input((3, 6, 3, 4)), keras.layers.Flatten(), keras.layers.Dense(len(LABELS.names))]
-    )
     fewer = DATASET.model_copy(update={"mu_points": 3, "mu_max": DATASET.mu[4]})
-    model = replace(MODEL, network=network, config=Config(dataset=fewer))
-
-    def interrupt(step):
-        raise KeyboardInterrupt
-
+    model = replace(MODEL, network=small_network(3), config=Config(dataset=fewer))
     for missing, guessed in (1, True), (2, False):
         checkpoint = tmp_path / f"{missing}.json"
         G = measured.assign(G_LL=measured["G_LL"].where(measured["mu"] != measured["mu"][missing]))
         with pytest.raises(KeyboardInterrupt):
-            dl.infer(G, model, NOISE, checkpoint=checkpoint, told=interrupt)
+            dl.infer(G, model, NOISE, checkpoint=checkpoint, told=interrupt_at_once)
         (notes,) = json.loads(checkpoint.read_text()).values()
         assert ("guess" in notes) == guessed
 

@@ -253,5 +253,5 @@ def test_members_of_an_inversion_make_the_data_or_not(barrier):
     assert wrong["p_value"] < 0.06  # far better than wrong disorder, even so
     few = verify(inversion_of(TRUE, apart[:9]), measured, **options)
     results = (right, wrong, few)
-    for result, says in zip(results, ("make", "do not make", "cannot say"), strict=True):
+    for result, says in zip(results, ("inversion make", "do not make", "cannot say"), strict=True):
         assert says in table(result.assign_coords(measurement=["a"]))[-1]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from disorder_landscape.config import DatasetConfig
 from disorder_landscape.inference.observation import Observation
 from disorder_landscape.inference.unknowns import Gaussian, Unknowns
 from disorder_landscape.learning.model import TrainedModel, points_of_grid
@@ -32,7 +33,7 @@ def network_guess(
     shown to the network. So the error is that of this network for such wires at this noise. Of a
     measurement with more points than the network's grid it is shown those that are its own.
     """
-    observation = as_seen(model, observation)
+    observation = as_seen(model.config.dataset, observation)
     unknowns = observation.unknowns
     guess = network_labels(model, unknowns, observation.measurement.G[None])[0]
     error = _error_without_noise(model, unknowns)
@@ -48,10 +49,9 @@ def network_guess(
     return Gaussian(guess - off.mean(axis=0), covariance)
 
 
-def as_seen(model: TrainedModel, observation: Observation) -> Observation:
-    """Return the part of an observation that is on the network's grid."""
-    axes = vars(observation.measurement)
-    return observation.at(*points_of_grid(model.config.dataset, axes, "measurement"))
+def as_seen(config: DatasetConfig, observation: Observation) -> Observation:
+    """Return the part of an observation that is on the grid of a network's dataset."""
+    return observation.at(*points_of_grid(config, vars(observation.measurement), "measurement"))
 
 
 def _error_without_noise(model: TrainedModel, unknowns: Unknowns) -> FloatArray:

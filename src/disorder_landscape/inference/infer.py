@@ -13,6 +13,7 @@ from disorder_landscape.arguments import ArgumentError, number_in, require, whol
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.inference.attempt import Attempt, best
 from disorder_landscape.inference.checkpoint import Checkpoint
+from disorder_landscape.inference.first_guess import as_seen
 from disorder_landscape.inference.inversion import (
     InversionSettings,
     Told,
@@ -20,16 +21,11 @@ from disorder_landscape.inference.inversion import (
     usual_settings,
     word_heard,
 )
-from disorder_landscape.inference.measurement import Measurement, measurement_of, settings_of
+from disorder_landscape.inference.measurement import measurement_of, settings_of
 from disorder_landscape.inference.observation import Observation, noise_of_channels, stated_noise
 from disorder_landscape.inference.unknowns import Unknowns
 from disorder_landscape.inference.verdict import verdict
-from disorder_landscape.learning.model import (
-    TrainedModel,
-    load_model,
-    load_model_config,
-    points_of_grid,
-)
+from disorder_landscape.learning.model import TrainedModel, load_model, load_model_config
 from disorder_landscape.physics.labels import AXES, CONDUCTANCES, labelled
 from disorder_landscape.physics.parameters import PARAMETER_RANGES, FloatArray
 from disorder_landscape.physics.topology import topological_visibility
@@ -106,12 +102,12 @@ def infer(
     members = whole_number_in("members", members, 2, 10_000)
     require(members % 2 == 0, "members", "be an even number", f"it is {members}")
     seed = whole_number_in("seed", seed, 0, 2**31)
+    observation = Observation(measurement, Unknowns(config), errors)
     trained, missing = None, False
     if network:
-        missing = not np.isfinite(_seen_by_network(config, measurement)).all()
+        missing = not _seen_by_network(config, observation).there.all()
     if network and not missing:
         trained = model if isinstance(model, TrainedModel) else load_model(model)
-    observation = Observation(measurement, Unknowns(config), errors)
     start = "the prior" if trained is None else "the network's guess"
     word = word_heard(trained, observation)
     if word is not None:
@@ -153,15 +149,14 @@ def _check_alpha(config: DatasetConfig, attrs: Mapping[Any, Any]) -> None:
     require(least < most or same, "alpha", must, f"the measurement's is {stated:g}")
 
 
-def _seen_by_network(config: DatasetConfig, measurement: Measurement) -> FloatArray:
-    """Return the conductances on the network's grid, or tell how to do without the network."""
+def _seen_by_network(config: DatasetConfig, observation: Observation) -> Observation:
+    """Return what is on the network's grid, or tell how to do without the network."""
     try:
-        points = points_of_grid(config, vars(measurement), "measurement")
+        return as_seen(config, observation)
     except ArgumentError as error:
         name, must, but = error.parts
         without = "(network=False, or --from-prior, does without the network)"
         raise ArgumentError(name, must, f"{but} {without}") from None
-    return np.asarray(measurement.G[np.ix_(*points)])
 
 
 def _result(observation: Observation, chosen: Attempt, members: int, seed: int) -> xr.Dataset:

@@ -127,9 +127,9 @@ def objective(observation: Observation, X: FloatArray, Y: FloatArray) -> FloatAr
     return np.asarray(likelihood + observation.unknowns.prior.squared_distance(X))
 
 
-def stated_noise(attrs: Mapping[Any, Any]) -> float | dict[str, float]:
+def stated_noise(attrs: Mapping[Any, Any], usual: float = NOISE_FLOOR) -> float | dict[str, float]:
     """Return the noise that a measurement states: one number, one of each channel, or the usual."""
-    noise = np.atleast_1d(attrs.get("noise", NOISE_FLOOR)).tolist()
+    noise = np.atleast_1d(attrs.get("noise", usual)).tolist()
     must = f"be one number in e²/h, or one for each of {', '.join(CONDUCTANCES)}"
     there = len(noise) in (1, len(CONDUCTANCES))
     require(there, "noise", must, f"the measurement states {len(noise)}")

@@ -18,7 +18,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -108,7 +107,7 @@ def verify(
     given = [measurements] if isinstance(measurements, xr.Dataset) else list(measurements)
     require(bool(given), "measurement", "be one Dataset or more", "there is none")
     measured = [measurement_of(dataset) for dataset in given]
-    stated = [_stated_noise(dataset.attrs) if noise is None else noise for dataset in given]
+    stated = [stated_noise(dataset.attrs, 0.0) if noise is None else noise for dataset in given]
     errors = np.array([noise_of_channels(one) for one in stated])
     controls = whole_number_in("controls", controls, round(1 / SIGNIFICANCE) - 1, 10_000)
     seed = whole_number_in("seed", seed, 0, 2**63)
@@ -121,12 +120,8 @@ def verify(
     squares, shift = _mean_squares(wires, measured, tried, errors, progress)
     result = comparison(np.sqrt(squares), shift, errors)
     if _is_inversion(prediction):
-        members = [
-            replace(wires[0], potential=V, alpha=alpha)
-            for V, alpha in zip(
-                prediction["potential"].to_numpy(), prediction["alpha"].to_numpy(), strict=True
-            )
-        ]
+        each = zip(prediction["potential"].to_numpy(), prediction["alpha"].to_numpy(), strict=True)
+        members = [replace(wires[0], potential=V, alpha=alpha) for V, alpha in each]
         p = _p_of_members(members, measured, errors, np.random.default_rng([seed, 2]))
         result["p_members"] = ((), p, {"units": "1"})
     return result
@@ -145,23 +140,16 @@ def _p_of_members(
     """Return `predictive_p` of an inversion's members, which know the mean of V."""
     if len(members) < LEAST_MEMBERS:
         return np.nan
-    shown = [
-        simulated([replace(wire, barrier=m.barrier) for wire in members], m).reshape(
-            len(members), -1
-        )
-        for m in measured
-    ]
+    shown = []
+    for m in measured:
+        wires = [replace(wire, barrier=m.barrier) for wire in members]
+        shown.append(simulated(wires, m).reshape(len(wires), -1))
     data = np.concatenate([m.G.ravel() for m in measured])
     variance = [
         np.broadcast_to(errors_variance(errors), m.G.shape).ravel()
         for errors, m in zip(noise, measured, strict=True)
     ]
     return predictive_p(np.concatenate(shown, axis=1), data, np.concatenate(variance), rng)
-
-
-def _stated_noise(attrs: Mapping[Any, Any]) -> float | dict[str, float]:
-    """Return the noise that a measurement states, or none, in e²/h."""
-    return stated_noise(attrs) if "noise" in attrs else 0.0
 
 
 def _predicted_wire(prediction: xr.Dataset) -> Nanowire:

@@ -57,5 +57,5 @@ def word_on(model: TrainedModel | None, observation: Observation, share: float) 
     """
     if model is None:
         return None
-    seen = as_seen(model, observation)
+    seen = as_seen(model.config.dataset, observation)
     return Word(model, seen) if seen.data.size <= share * observation.data.size else None
