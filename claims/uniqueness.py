@@ -44,7 +44,6 @@ def main() -> None:
         rows = pd.DataFrame(information_rows(one)).round({"spread": 7, "prior_spread": 7})
         table = pd.concat([table, rows], ignore_index=True)
         write_rows(table, path, [*KEYS, "noise"], COMMAND)
-    write_rows(table, path, [*KEYS, "noise"], COMMAND)
 
 
 if __name__ == "__main__":
