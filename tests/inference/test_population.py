@@ -103,9 +103,9 @@ def test_an_interrupted_population_goes_on(lines, tmp_path):
     np.testing.assert_array_equal(first.members, second.members)
 
 
-@pytest.mark.parametrize(("width", "wide"), [(1e-3, False), (0.02, True)])
+@pytest.mark.parametrize(("width", "wide"), [(1e-3, False), (1.2e-3, True), (0.02, True)])
 def test_answers_wider_than_conductances_are_straight_are_populations(lines, width, wide):
-    """At 50 mK kT is 4.3 µeV."""
+    """At 50 mK a quarter of kT is 1.1 µeV."""
     exact = posterior(lines)
     narrow = exact.covariance * (width / UNKNOWNS.site_deviation(exact.covariance)) ** 2
     answer = Gaussian(exact.mean, narrow)

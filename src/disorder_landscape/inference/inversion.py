@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -22,11 +23,12 @@ from disorder_landscape.inference.word import Word, word_on
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.physics.parameters import BOLTZMANN
 
-STRAIGHT = 1.0
+STRAIGHT = 0.25
 """An answer whose error bar is more than this many kT, or …"""
 LEAST_WIDTH = 1e-3
-"""… this in meV, about the width of levels, is a population's: conductances are peaks of that
-width, and the posterior is no normal distribution about one optimum."""
+"""… this in meV, about the width of levels, is a population's: conductances are peaks of about that
+width, and the posterior is no normal distribution about one optimum. By Mahalanobis' distances,
+Laplace's error bars are right below that and too small above it."""
 
 
 @dataclass(frozen=True)
@@ -135,15 +137,16 @@ def judged(
 ) -> list[Attempt]:
     """Return attempts whose best has the posterior's moments, where Laplace's are not those.
 
-    The members that have them are drawn where all attempts that fit have ended (`population`).
+    The members that have them are drawn where the rounds and the polishes of all attempts that
+    fit have ended (`population`).
     """
     chosen = best(attempts)
     width = max(STRAIGHT * BOLTZMANN * observation.measurement.temperature, LEAST_WIDTH)
     bar = observation.unknowns.site_deviation(chosen.answer.covariance)
     if not chosen.fits or bar < width:
         return attempts
-    proposals = [attempt.last for attempt in attempts if attempt.fits]
-    drawn = population(observation, proposals, seed, recall, told)
+    ends = [(attempt.last, attempt.answer) for attempt in attempts if attempt.fits]
+    drawn = population(observation, [*chain(*ends)], seed, recall, told)
     instead = replace(chosen, answer=drawn.moments, population=drawn)
     return [instead if attempt is chosen else attempt for attempt in attempts]
 

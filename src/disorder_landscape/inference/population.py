@@ -2,12 +2,12 @@
 
 Where the noise hides much, the posterior is as wide as a peak of the conductances or wider. Then it
 is no normal distribution about one optimum: it bends, and has valleys beside valleys. But there the
-rounds' own answers are nearly as wide, so that members of these, weighted with the exact posterior,
-are members of the posterior. The next members are drawn from a normal distribution with the moments
-of the weighted ones, and so on; all count, as if drawn from the mixture of all proposals (adaptive
-multiple importance sampling: Cornuet et al., Scand. J. Stat. 39, 798 (2012)). As long as a few
-members have all the weight, their weights are raised to a power below one (Koblents and Míguez,
-Stat. Comput. 25, 407 (2015)).
+answers of rounds and polishes are nearly as wide, so that members of these, weighted with the exact
+posterior, are members of the posterior. The next members are drawn from a normal distribution with
+the moments of the weighted ones, and so on; all count, as if drawn from the mixture of all
+proposals (adaptive multiple importance sampling: Cornuet et al., Scand. J. Stat. 39, 798 (2012)).
+As long as a few members have all the weight, their weights are raised to a power below one
+(Koblents and Míguez, Stat. Comput. 25, 407 (2015)).
 """
 
 from __future__ import annotations
