@@ -22,11 +22,12 @@ from disorder_landscape.claims.inversions import (
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.inference.inversion import word_heard
 from disorder_landscape.inference.measurement import empty_measurement
+from disorder_landscape.inference.unknowns import Gaussian
 from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED
 from disorder_landscape.physics.parameters import Nanowire
 from disorder_landscape.studies.components import measured_grid
 from disorder_landscape.studies.inversions import KEYS, Task, measured_wire, model_of, wrong
-from disorder_landscape.studies.rows import missing, read_rows, write_rows
+from disorder_landscape.studies.rows import complete, missing, read_rows, write_rows
 from disorder_landscape.studies.uniqueness import NOISE, Setting, information_rows
 from disorder_landscape.studies.unmodelled import KINDS, NOTHING, changed
 
@@ -45,6 +46,7 @@ def row(index, model=FIVE, noise=0.01, **changes):
         "network_alpha_error": 0.02,
         "alpha_error": 0.001,
         "mahalanobis": (z**2).sum(),
+        "worth": np.nan,
         "verdict": CONVERGED,
         "seconds": 10.0,
         "deviations": " ".join(f"{one:.3f}" for one in z),
@@ -65,6 +67,27 @@ def test_what_is_there_is_not_done_again(tmp_path):
     assert Task(FIVE, 0.01, 2) not in left
     made = json.loads(path.with_suffix(".json").read_text())["provenance"]
     assert made["sha256"] == hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def test_a_table_keeps_what_others_add_to_it(tmp_path, monkeypatch):
+    """Two runs that share a table, or one that was interrupted."""
+    path, done = tmp_path / "rows.csv", []
+    there = "disorder_landscape.studies.rows"
+    monkeypatch.setattr(f"{there}.compile_kernels", lambda: None)
+    monkeypatch.setattr(f"{there}.each_result", lambda function, tasks, _: map(function, tasks))
+
+    def row_of(task):
+        done.append(task.index)
+        if task.index == 1:
+            others = [row(5), row(1)]
+            write_rows(pd.concat([read_rows(path, KEYS), pd.DataFrame(others)]), path, KEYS, "")
+        return row(task.index)
+
+    tasks = [Task(FIVE, 0.01, index) for index in range(3)]
+    complete(row_of, tasks[:1], path, KEYS, "test", 1)
+    complete(row_of, tasks, path, KEYS, "test", 1)
+    assert done == [0, 1, 2]
+    assert list(read_rows(path, KEYS)["index"]) == [0, 1, 2, 5]
 
 
 def test_the_table_counts_wrong_answers_by_their_verdict(tmp_path):
@@ -170,11 +193,26 @@ def test_joint_coverage_sees_one_axis_that_is_wrong(too_small, lost):
     z = np.random.default_rng(5).normal(size=(2000, 7))
     z[:, 6] *= too_small
     texts = [" ".join(f"{one:.3f}" for one in wire) for wire in z]
-    table = pd.DataFrame({"deviations": texts, "mahalanobis": (z**2).sum(axis=1)})
+    squares = (z**2).sum(axis=1)
+    table = pd.DataFrame({"deviations": texts, "mahalanobis": squares, "worth": np.nan})
     nominal = np.array([0.5, 0.8, 0.95])
     assert np.all(abs(coverage(table) - nominal) < 0.06)
     missing = nominal - joint_coverage(table)
     assert np.all(missing > lost) if lost else np.all(abs(missing) < 0.03)
+
+
+def test_joint_coverage_knows_that_populations_have_few_members():
+    """Their covariance is too narrow along one axis or another, and their mean is off."""
+    rng, worth, rows = np.random.default_rng(6), 40, []
+    for truth in rng.normal(size=(1000, 7)):
+        members = rng.normal(size=(worth, 7))
+        drawn = Gaussian(members.mean(axis=0), np.cov(members.T))
+        square = float(drawn.squared_distance(truth))
+        rows.append({"mahalanobis": square, "deviations": "0 0 0 0 0 0 0"})
+    table = pd.DataFrame(rows)
+    nominal = np.array([0.5, 0.8, 0.95])
+    np.testing.assert_allclose(joint_coverage(table.assign(worth=worth)), nominal, atol=0.04)
+    assert np.all(joint_coverage(table.assign(worth=np.nan)) < nominal - 0.06)
 
 
 @pytest.fixture(scope="module")

@@ -68,13 +68,14 @@ def complete(
     command: str,
     workers: int,
 ) -> None:
-    """Carry out the tasks that a table has no row of, and write each row as it comes."""
-    table = read_rows(path, keys)
-    left = missing(tasks, table, keys)
+    """Carry out the tasks that a table has no row of, and write each row as it comes.
+
+    Rows that others have added to the table in the meantime are kept.
+    """
+    left = missing(tasks, read_rows(path, keys), keys)
     compile_kernels()
     with tqdm(total=len(tasks), initial=len(tasks) - len(left), unit=" wires") as bar:
         for row in each_result(function, left, workers):
-            table = pd.concat([table, pd.DataFrame([row])], ignore_index=True)
-            write_rows(table, path, keys, command)
+            table = pd.concat([read_rows(path, keys), pd.DataFrame([row])], ignore_index=True)
+            write_rows(table.drop_duplicates(keys), path, keys, command)
             bar.update()
-    write_rows(table, path, keys, command)
