@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from scipy.stats import chi2, norm
+from scipy.stats import chi2, f, norm
 
 from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.table import markdown
@@ -77,9 +77,14 @@ def joint_quantiles(table: pd.DataFrame) -> FloatArray:
 
     All unknowns count at once, by Mahalanobis' distance: uniform over the wires if error bars and
     their correlations are right. `coverage` does not see correlations, nor a single wrong axis.
+    Where mean and covariance are those of a population that is worth n members, the square of the
+    distance is 1 + 1/n times Hotelling's T² (Ann. Math. Stat. 2, 360 (1931)).
     """
-    unknowns = table["deviations"].str.split().str.len()
-    return np.asarray(chi2.cdf(table["mahalanobis"], unknowns))
+    squares, unknowns = table["mahalanobis"], table["deviations"].str.split().str.len()
+    n = np.maximum(table["worth"], unknowns + 1)
+    ratio = squares * (n - unknowns) / (unknowns * (n - 1) * (1 + 1 / n))
+    few = f.cdf(ratio, unknowns, n - unknowns)
+    return np.asarray(np.where(table["worth"].isna(), chi2.cdf(squares, unknowns), few))
 
 
 def joint_coverage(table: pd.DataFrame) -> FloatArray:

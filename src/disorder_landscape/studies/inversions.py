@@ -128,8 +128,8 @@ class Inverted:
 
     chosen: Attempt
     outcome: dict[str, object]
-    """`spread`, the answer's own deviation of V in meV; `excess`, `verdict`, `attempts`, `rounds`,
-    `seconds`."""
+    """`spread`, the answer's own deviation of V in meV; `worth` of its population, NaN where it is
+    none; `excess`, `verdict`, `attempts`, `rounds`, `seconds`."""
 
     @property
     def answer(self) -> Gaussian:
@@ -145,6 +145,7 @@ def inverted(observation: Observation, network: TrainedModel | None, seed: int) 
     chosen = best(attempts)
     outcome: dict[str, object] = {
         "spread": observation.unknowns.site_deviation(chosen.answer.covariance),
+        "worth": np.nan if chosen.population is None else chosen.population.worth,
         "excess": chosen.excess,
         "verdict": verdict(observation, attempts),
         "attempts": len(attempts),
