@@ -179,6 +179,7 @@ def test_verify_writes_what_few_members_of_an_inversion_come_to(verification):
         potential=one["potential"].expand_dims(member=3),
         potential_mean=one["potential"],
         alpha=one["alpha"].expand_dims(member=3),
+        alpha_mean=one["alpha"],
     )
     found.to_netcdf("inferred.nc", engine="h5netcdf")
     code, out, err = verification("inferred.nc", "other.nc", "--controls", 19, "-o", "verified.nc")

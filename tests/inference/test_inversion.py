@@ -83,8 +83,9 @@ def test_the_disorder_is_found_within_its_error_bars(inferred):
     spread = float(np.sqrt((inferred["potential_deviation"] ** 2).mean()))
     assert spread < 0.005
     assert site_error(inferred) < 3 * spread
-    alpha = inferred["alpha"]
-    assert abs(float(alpha.mean()) - TRUE.alpha) < 4 * float(alpha.std())
+    assert abs(inferred["alpha_mean"] - TRUE.alpha) < 4 * inferred["alpha_deviation"]
+    off = abs(inferred["components_mean"] - TRUE.components)
+    assert np.all(off < 4 * inferred["components_deviation"])
     np.testing.assert_allclose(inferred["misfit"], NOISE, rtol=0.25)
 
 
@@ -92,8 +93,10 @@ def test_the_members_are_what_the_result_says_of_them(inferred):
     V = inferred["potential"]
     assert V.dims == ("member", "site")
     assert V.sizes == {"member": 64, "site": 100}
-    np.testing.assert_allclose(V.mean("member"), inferred["potential_mean"], atol=1e-12)
-    np.testing.assert_allclose(V.std("member"), inferred["potential_deviation"], rtol=0.4)
+    for name, members in inferred[["potential", "components", "alpha"]].items():
+        mean, deviation = inferred[f"{name}_mean"], inferred[f"{name}_deviation"]
+        np.testing.assert_allclose(members.mean("member"), mean, atol=1e-12)
+        np.testing.assert_allclose(members.std("member"), deviation, rtol=0.4)
     member = Nanowire(V[5].to_numpy(), alpha=float(inferred["alpha"][5]))
     maps = inferred["map_mu"], inferred["map_B"]
     T = dl.topological_visibility(member, *maps).isel(lead=0)
@@ -102,7 +105,7 @@ def test_the_members_are_what_the_result_says_of_them(inferred):
     np.testing.assert_array_equal(
         T.to_numpy()[certain] < 0, inferred["P_topological"].to_numpy()[certain]
     )
-    mean = Nanowire(inferred["potential_mean"].to_numpy(), alpha=float(inferred["alpha"].mean()))
+    mean = Nanowire(inferred["potential_mean"].to_numpy(), alpha=float(inferred["alpha_mean"]))
     G = conductance(mean, DATASET.mu, DATASET.B, DATASET.bias)
     for name in CONDUCTANCES:
         np.testing.assert_allclose(inferred[name], G[name], atol=1e-6)
@@ -381,7 +384,7 @@ def test_noise_that_is_other_than_stated_is_noticed(misfit, says):
 def test_the_summary_says_it_all(inferred):
     failed = inferred.assign_attrs(verdict=NOT_DESCRIBED)
     assert "neither the error bars below" in summary(failed)[1]
-    known = summary(inferred.assign(alpha=8.0 + 0 * inferred["alpha"]))
+    known = summary(inferred.assign(alpha_mean=8.0, alpha_deviation=0.0))
     assert "alpha           8 meV nm, as in the model" in known
     lines = "\n".join(summary(inferred))
     assert "neither" not in lines

@@ -229,6 +229,7 @@ def inversion_of(wire, apart):
         potential=(one["potential"] + off).transpose("member", "site"),
         potential_mean=one["potential"],
         alpha=wire.alpha + off,
+        alpha_mean=wire.alpha,
     )
 
 

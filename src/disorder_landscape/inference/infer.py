@@ -79,8 +79,10 @@ def infer(
     -------
     Dataset
         Of the members: potential (member, site) and components (member, component) in meV, alpha
-        (member) in meV nm. potential_mean and potential_deviation (site). misfit (channel) in
-        e²/h, of the most probable wire, NaN where nothing was measured. Of the mean: conductances
+        (member) in meV nm. Means and standard deviations of the posterior itself:
+        components_mean and components_deviation (component), alpha_mean and alpha_deviation,
+        potential_mean and potential_deviation (site). misfit (channel) in e²/h, of the most
+        probable wire, NaN where nothing was measured. Of the mean: conductances
         G_LL … G_RL (mu, B, bias) and, on a finer grid, T_IV (lead, map_mu, map_B). P_topological
         (map_mu, map_B), the share of the members with det r < 0. Attributes: verdict ("converged",
         "not converged" or "not described by the model"), excess, attempts, rounds, start, noise;
@@ -161,7 +163,8 @@ def _seen_by_network(config: DatasetConfig, observation: Observation) -> Observa
 
 def _result(observation: Observation, chosen: Attempt, members: int, seed: int) -> xr.Dataset:
     m, unknowns = observation.measurement, observation.unknowns
-    mean = chosen.answer.mean
+    mean, deviation = chosen.answer.mean, np.sqrt(np.diag(chosen.answer.covariance))
+    names = unknowns.names
     X = chosen.draw(np.random.default_rng([seed, 2**31 + 1]), members)
     V = unknowns.potential(X)
     maps = _maps(m.mu, m.B)
@@ -174,6 +177,10 @@ def _result(observation: Observation, chosen: Attempt, members: int, seed: int) 
         "components": (("member", "component"), unknowns.components(X)),
         "alpha": ("member", unknowns.alpha(X)),
         "potential": (("member", "site"), V),
+        "components_mean": ("component", unknowns.components(mean)),
+        "components_deviation": ("component", unknowns.components(deviation)),
+        "alpha_mean": ((), unknowns.alpha(mean)),
+        "alpha_deviation": ((), deviation[names.index("alpha")] if "alpha" in names else 0.0),
         "potential_mean": ("site", unknowns.potential(mean)),
         "potential_deviation": ("site", _deviation(unknowns, chosen)),
         "misfit": ("channel", observation.misfit(chosen.data)),

@@ -95,13 +95,11 @@ def _deviation(panel: Any, result: xr.Dataset) -> None:
 
 
 def _components(panel: Any, result: xr.Dataset) -> None:
-    c = result["components"]
-    panel.errorbar(
-        result["component"], c.mean("member"), c.std("member"), fmt="k.", capsize=2, lw=0.8
-    )
+    c, bar = result["components_mean"], result["components_deviation"]
+    panel.errorbar(result["component"], c, bar, fmt="k.", capsize=2, lw=0.8)
     panel.axhline(0.0, color="0.7", lw=0.5)
     panel.set(xlabel="component $n$", ylabel="$c_n$ [meV]")
-    panel.set_title(rf"$\alpha$ = {alpha_with_deviation(result['alpha'])}")
+    panel.set_title(rf"$\alpha$ = {alpha_with_deviation(result)}")
 
 
 def _misfit(panel: Any, result: xr.Dataset) -> None:

@@ -70,9 +70,9 @@ def stated_noise_hint(misfit: FloatArray, noise: FloatArray) -> str:
     )
 
 
-def alpha_with_deviation(alpha: xr.DataArray) -> str:
-    """Return α and its deviation over the members as text."""
-    mean, deviation = float(alpha.mean()), float(alpha.std())
+def alpha_with_deviation(result: xr.Dataset) -> str:
+    """Return α and its deviation as text."""
+    mean, deviation = float(result["alpha_mean"]), float(result["alpha_deviation"])
     said = f"± {deviation:.2g} meV nm" if deviation else "meV nm, as in the model"
     return f"{mean:.5g} {said}"
 
@@ -90,7 +90,7 @@ def summary(result: xr.Dataset) -> list[str]:
         f"from            {attrs['start']}",
         f"attempts        {attrs['attempts']}, rounds: {attrs['rounds']}",
         f"error bar of V  {error_bar(result):.3g} µeV, root mean square over the sites",
-        f"alpha           {alpha_with_deviation(result['alpha'])}",
+        f"alpha           {alpha_with_deviation(result)}",
     ]
     if attrs["verdict"] != CONVERGED:
         lines.insert(1, f"                {NOT_TO_BE_TRUSTED}")

@@ -155,16 +155,18 @@ def _p_of_members(
 def _predicted_wire(prediction: xr.Dataset) -> Nanowire:
     """Return the wire that was predicted, or the mean of what an inversion has found."""
     must = "hold the potential and alpha of one wire, as `landscape predict` writes them"
-    inversion = _is_inversion(prediction)
-    wanted = {"potential": ("member", "site"), "alpha": ("member",)}
+    wanted, mean = {"potential": ("site",), "alpha": ()}, ""
+    if _is_inversion(prediction):
+        of_members = {name: ("member", *dims) for name, dims in wanted.items()}
+        mean = "_mean"
+        wanted = {f"{name}{mean}": dims for name, dims in wanted.items()} | of_members
     for name, dims in wanted.items():
         there = isinstance(prediction, xr.Dataset) and name in prediction.variables
         require(there, "prediction", must, f"it lacks {name}")
         found = prediction[name].dims
-        right = found == (dims if inversion else dims[1:])
-        require(right, "prediction", must, f"the dims of {name} are {found}")
-    V = prediction["potential_mean" if inversion else "potential"].to_numpy()
-    return Nanowire(V, alpha=float(prediction["alpha"].mean()))
+        require(found == dims, "prediction", must, f"the dims of {name} are {found}")
+    V, alpha = (prediction[f"{name}{mean}"] for name in ("potential", "alpha"))
+    return Nanowire(V.to_numpy(), alpha=float(alpha))
 
 
 def _disorder_model(
