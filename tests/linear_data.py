@@ -39,7 +39,8 @@ class Linear:
 
 def posterior(observation):
     """Bayes' theorem for linear data."""
-    prior, precision = UNKNOWNS.prior, np.linalg.inv(UNKNOWNS.prior.covariance)
+    prior = observation.unknowns.prior
+    precision = np.linalg.inv(prior.covariance)
     weighted = observation.slope / observation.variance
     covariance = np.linalg.inv(weighted @ observation.slope.T + precision)
     return Gaussian(covariance @ (weighted @ observation.data + precision @ prior.mean), covariance)

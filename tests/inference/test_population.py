@@ -8,10 +8,10 @@ import pytest
 from disorder_landscape.inference.attempt import Attempt
 from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.inversion import judged
-from disorder_landscape.inference.population import WORTH, Population, population, tamed
-from disorder_landscape.inference.unknowns import Gaussian
+from disorder_landscape.inference.population import WORTH, Population, population, tamed, widened
+from disorder_landscape.inference.unknowns import Gaussian, Unknowns
 from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED, verdict
-from linear_data import DATA, SIZE, UNKNOWNS, Linear, posterior
+from linear_data import CONFIG, DATA, SIZE, UNKNOWNS, Linear, posterior
 
 PRIOR = UNKNOWNS.prior
 WIDTH = np.sqrt(np.diag(PRIOR.covariance))
@@ -44,6 +44,25 @@ def test_members_have_the_posteriors_moments(lines):
     assert abs((found.moments.mean - exact.mean) / scale).max() < 0.3
     ratio = np.linalg.eigvals(np.linalg.solve(exact.covariance, found.moments.covariance))
     assert 0.5 < ratio.real.min() <= ratio.real.max() < 1.7
+
+
+def test_populations_are_not_too_narrow():
+    """All directions at once, if their Mahalanobis distances are Hotelling's, on average."""
+    ten = Unknowns(CONFIG.model_copy(update={"components": 10}))
+    size = len(ten.names)
+    rng = np.random.default_rng(7)
+    slope = rng.normal(size=(size, DATA)) / np.sqrt(np.diag(ten.prior.covariance))[:, None]
+    many = Linear(np.zeros(DATA), slope, unknowns=ten, variance=ONE)
+    exact = posterior(many)
+    too_wide = Gaussian(exact.mean, 1.4**2 * exact.covariance)
+    ratio = []
+    for seed in range(40):
+        found = population(many, [too_wide, widened(exact)], [seed])
+        n, off = found.worth, found.moments.mean - exact.mean
+        second_moment = exact.covariance + np.outer(off, off)
+        square = np.trace(np.linalg.solve(found.moments.covariance, second_moment))
+        ratio.append(square / (size * (n + 1) / (n - size - 2)))
+    assert abs(np.mean(ratio) - 1) < 0.02
 
 
 def test_both_valleys_have_their_share():

@@ -15,7 +15,7 @@ from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.first_guess import network_guess
 from disorder_landscape.inference.observation import Observation
 from disorder_landscape.inference.polish import polish
-from disorder_landscape.inference.population import population
+from disorder_landscape.inference.population import population, widened
 from disorder_landscape.inference.rounds import WITH_WORD, Recall, RoundSettings, rounds
 from disorder_landscape.inference.unknowns import Gaussian
 from disorder_landscape.inference.verdict import NOT_CONVERGED, is_surely_right, verdict
@@ -145,7 +145,7 @@ def judged(
     bar = observation.unknowns.site_deviation(chosen.answer.covariance)
     if not chosen.fits or bar < width:
         return attempts
-    ends = [(attempt.last, attempt.answer) for attempt in attempts if attempt.fits]
+    ends = [(attempt.last, widened(attempt.answer)) for attempt in attempts if attempt.fits]
     drawn = population(observation, [*chain(*ends)], seed, recall, told)
     instead = replace(chosen, answer=drawn.moments, population=drawn)
     return [instead if attempt is chosen else attempt for attempt in attempts]
