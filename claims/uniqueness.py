@@ -12,7 +12,7 @@ from pathlib import Path
 import pandas as pd
 from tqdm import tqdm
 
-from disorder_landscape.studies.rows import missing, read_rows, write_rows
+from disorder_landscape.studies.rows import add_rows, missing, read_rows
 from disorder_landscape.studies.uniqueness import Setting, information_rows
 
 COMPONENTS = (5, 10, 15, 20, 30, 54)
@@ -33,17 +33,15 @@ def main() -> None:
     arguments = parser.parse_args()
 
     path = arguments.output
-    table = read_rows(path, KEYS)
     settings = [
         Setting(components, points, biases, index)
         for index, points, biases, components in product(
             range(arguments.wires), POINTS, BIASES, COMPONENTS
         )
     ]
-    for one in tqdm(missing(settings, table, KEYS), unit=" settings"):
+    for one in tqdm(missing(settings, read_rows(path, KEYS), KEYS), unit=" settings"):
         rows = pd.DataFrame(information_rows(one)).round({"spread": 7, "prior_spread": 7})
-        table = pd.concat([table, rows], ignore_index=True)
-        write_rows(table, path, [*KEYS, "noise"], COMMAND)
+        add_rows(rows, path, [*KEYS, "noise"], COMMAND)
 
 
 if __name__ == "__main__":

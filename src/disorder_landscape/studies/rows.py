@@ -33,6 +33,12 @@ def write_rows(table: pd.DataFrame, path: Path, keys: list[str], command: str) -
     write_json(path.with_suffix(".json"), {"provenance": made})
 
 
+def add_rows(rows: pd.DataFrame, path: Path, keys: list[str], command: str) -> None:
+    """Write rows into a table, and keep those that others have added to it in the meantime."""
+    table = pd.concat([read_rows(path, keys), rows], ignore_index=True)
+    write_rows(table.drop_duplicates(keys), path, keys, command)
+
+
 def missing(tasks: Sequence[Task], table: pd.DataFrame, keys: list[str]) -> list[Task]:
     """Return the tasks that the table has no row of; the keys are attributes of a task."""
     there = set(table[keys].itertuples(index=False, name=None))
@@ -68,14 +74,10 @@ def complete(
     command: str,
     workers: int,
 ) -> None:
-    """Carry out the tasks that a table has no row of, and write each row as it comes.
-
-    Rows that others have added to the table in the meantime are kept.
-    """
+    """Carry out the tasks that a table has no row of, and write each row as it comes."""
     left = missing(tasks, read_rows(path, keys), keys)
     compile_kernels()
     with tqdm(total=len(tasks), initial=len(tasks) - len(left), unit=" wires") as bar:
         for row in each_result(function, left, workers):
-            table = pd.concat([read_rows(path, keys), pd.DataFrame([row])], ignore_index=True)
-            write_rows(table.drop_duplicates(keys), path, keys, command)
+            add_rows(pd.DataFrame([row]), path, keys, command)
             bar.update()
