@@ -163,8 +163,7 @@ def _seen_by_network(config: DatasetConfig, observation: Observation) -> Observa
 
 def _result(observation: Observation, chosen: Attempt, members: int, seed: int) -> xr.Dataset:
     m, unknowns = observation.measurement, observation.unknowns
-    mean, deviation = chosen.answer.mean, np.sqrt(np.diag(chosen.answer.covariance))
-    names = unknowns.names
+    mean, covariance = chosen.answer.mean, chosen.answer.covariance
     X = chosen.draw(np.random.default_rng([seed, 2**31 + 1]), members)
     V = unknowns.potential(X)
     maps = _maps(m.mu, m.B)
@@ -178,11 +177,11 @@ def _result(observation: Observation, chosen: Attempt, members: int, seed: int) 
         "alpha": ("member", unknowns.alpha(X)),
         "potential": (("member", "site"), V),
         "components_mean": ("component", unknowns.components(mean)),
-        "components_deviation": ("component", unknowns.components(deviation)),
+        "components_deviation": ("component", unknowns.components(np.sqrt(np.diag(covariance)))),
         "alpha_mean": ((), unknowns.alpha(mean)),
-        "alpha_deviation": ((), deviation[names.index("alpha")] if "alpha" in names else 0.0),
+        "alpha_deviation": ((), unknowns.alpha_deviation(covariance)),
         "potential_mean": ("site", unknowns.potential(mean)),
-        "potential_deviation": ("site", _deviation(unknowns, chosen)),
+        "potential_deviation": ("site", _deviation(unknowns, covariance)),
         "misfit": ("channel", observation.misfit(chosen.data)),
         **{name: (AXES, G[..., c]) for c, name in enumerate(CONDUCTANCES)},
         "T_IV": (("lead", *grid), T_IV.isel(realization=0).to_numpy()),
@@ -199,10 +198,10 @@ def _result(observation: Observation, chosen: Attempt, members: int, seed: int) 
     return labelled(xr.Dataset(data, coords=coords))
 
 
-def _deviation(unknowns: Unknowns, chosen: Attempt) -> FloatArray:
+def _deviation(unknowns: Unknowns, covariance: FloatArray) -> FloatArray:
     """Return the standard deviation of V on each site."""
     each = unknowns.potential(np.eye(len(unknowns.names)))  # V of each unknown alone
-    return np.asarray(np.sqrt(np.einsum("is,ij,js->s", each, chosen.answer.covariance, each)))
+    return np.asarray(np.sqrt(np.einsum("is,ij,js->s", each, covariance, each)))
 
 
 def _maps(mu: FloatArray, B: FloatArray) -> list[FloatArray]:

@@ -91,6 +91,11 @@ class Unknowns:
             return np.full(x.shape[:-1], self.config.alpha_range[0])
         return np.asarray(np.clip(x[..., self.config.components], *PARAMETER_RANGES["alpha"][:2]))
 
+    def alpha_deviation(self, covariance: FloatArray) -> float:
+        """Return the deviation of α in meV nm, zero where it is known."""
+        n = self.config.components
+        return float(np.sqrt(covariance[n, n])) if self.config.alpha_is_label else 0.0
+
     def potential(self, x: FloatArray) -> FloatArray:
         """Return V_dis in meV, shape (…, site)."""
         return potential_from_components(self.components(x), self.config.sites, x[..., -1])

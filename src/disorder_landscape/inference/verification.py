@@ -155,17 +155,17 @@ def _p_of_members(
 def _predicted_wire(prediction: xr.Dataset) -> Nanowire:
     """Return the wire that was predicted, or the mean of what an inversion has found."""
     must = "hold the potential and alpha of one wire, as `landscape predict` writes them"
-    wanted, mean = {"potential": ("site",), "alpha": ()}, ""
+    names, wanted = ("potential", "alpha"), {"potential": ("site",), "alpha": ()}
     if _is_inversion(prediction):
-        of_members = {name: ("member", *dims) for name, dims in wanted.items()}
-        mean = "_mean"
-        wanted = {f"{name}{mean}": dims for name, dims in wanted.items()} | of_members
+        names = "potential_mean", "alpha_mean"
+        wanted = {"potential_mean": ("site",), "alpha_mean": ()}
+        wanted |= {"potential": ("member", "site"), "alpha": ("member",)}
     for name, dims in wanted.items():
         there = isinstance(prediction, xr.Dataset) and name in prediction.variables
         require(there, "prediction", must, f"it lacks {name}")
         found = prediction[name].dims
         require(found == dims, "prediction", must, f"the dims of {name} are {found}")
-    V, alpha = (prediction[f"{name}{mean}"] for name in ("potential", "alpha"))
+    V, alpha = (prediction[name] for name in names)
     return Nanowire(V.to_numpy(), alpha=float(alpha))
 
 
