@@ -246,8 +246,14 @@ def test_members_of_an_inversion_make_the_data_or_not(barrier):
     apart = bar * np.random.default_rng(3).normal(size=60)
     measured = measure(TRUE, barrier=barrier, noise=noise)
     options = {"noise": noise, "shifts": [0.0]}
-    right = verify(inversion_of(TRUE, apart), measured, **options)
+    told = []
+    right = verify(
+        inversion_of(TRUE, apart), measured, progress=lambda *pair: told.append(pair), **options
+    )
     assert right["p_members"] > 0.05
+    pairs = measured.sizes["mu"] * measured.sizes["B"]
+    done, in_all = (list(numbers) for numbers in zip(*told, strict=True))
+    assert sum(done) == in_all[0] == in_all[-1] == (1 + CONTROLS + apart.size) * pairs
     shifted = replace(TRUE, potential=TRUE.potential + 20 * bar)
     wrong = verify(inversion_of(shifted, apart), measured, **options)
     assert wrong["p_members"] < 0.02

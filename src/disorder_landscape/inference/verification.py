@@ -7,11 +7,7 @@ disorder of the same model, the controls. A prediction that explains no more tha
 or the model is. Members of an inversion say more: whether the measurements are among those that
 they make.
 
-The mean of V is none of the paper's labels (S-II.1: it has a standard deviation of 0.01 meV), so
-that a prediction may lack it. It acts as a shift of μ, which an experiment would calibrate, and
-moves levels by more than kT. So each wire, control or not, is compared at the shift within
-±0.03 meV that suits it best; the shift is found with the measurements at θ = 0, where there are
-any: they are simulated sooner.
+Each wire, control or not, is compared at the mean of V that suits it best (`mismatch`).
 """
 
 from __future__ import annotations
@@ -29,24 +25,19 @@ from disorder_landscape.inference.comparison import (
     LEAST_MEMBERS,
     SIGNIFICANCE,
     comparison,
-    scores,
 )
 from disorder_landscape.inference.measurement import Measurement, measurement_of, simulated
+from disorder_landscape.inference.mismatch import SHIFTS, mean_squares, simulations
 from disorder_landscape.inference.observation import (
     errors_variance,
     noise_of_channels,
     stated_noise,
 )
 from disorder_landscape.inference.posterior import predictive_p
-from disorder_landscape.physics.disorder import MEAN_STD, disorder_realization
-from disorder_landscape.physics.labels import CONDUCTANCES
+from disorder_landscape.physics.disorder import disorder_realization
 from disorder_landscape.physics.parameters import FloatArray, Nanowire
-from disorder_landscape.physics.transport import Progress, conductance
+from disorder_landscape.physics.transport import Progress
 
-SHIFTS = np.linspace(-3 * MEAN_STD, 3 * MEAN_STD, 13)
-"""Means of V in meV that are tried; the steps are about kT."""
-FINER = np.linspace(-0.8, 0.8, 9)
-"""Then those around the best of them, in units of the step: conductances change within kT."""
 CONTROLS = 50
 
 
@@ -117,12 +108,18 @@ def verify(
     lead_mu = model.wire.lead_mu
     controlled = [predicted, *control_wires(model, controls, seed)]
     wires = [replace(wire, lead_mu=lead_mu) for wire in controlled]
-    squares, shift = _mean_squares(wires, measured, tried, errors, progress)
+    members = _members(prediction, wires[0])
+    in_all = simulations(len(wires), measured, tried)
+    in_all += len(members) * sum(m.mu.size * m.B.size for m in measured)
+
+    def told(done: int) -> None:
+        if progress is not None:
+            progress(done, in_all)
+
+    squares, shift = mean_squares(wires, measured, tried, errors, told)
     result = comparison(np.sqrt(squares), shift, errors)
     if _is_inversion(prediction):
-        each = zip(prediction["potential"].to_numpy(), prediction["alpha"].to_numpy(), strict=True)
-        members = [replace(wires[0], potential=V, alpha=alpha) for V, alpha in each]
-        p = _p_of_members(members, measured, errors, np.random.default_rng([seed, 2]))
+        p = _p_of_members(members, measured, errors, np.random.default_rng([seed, 2]), told)
         result["p_members"] = ((), p, {"units": "1"})
     return result
 
@@ -131,19 +128,31 @@ def _is_inversion(prediction: xr.Dataset) -> bool:
     return isinstance(prediction, xr.Dataset) and "potential_mean" in prediction.variables
 
 
+def _members(prediction: xr.Dataset, wire: Nanowire) -> list[Nanowire]:
+    """Return the members of an inversion, if the prediction is one and has enough of them."""
+    if not _is_inversion(prediction) or prediction.sizes["member"] < LEAST_MEMBERS:
+        return []
+    each = zip(prediction["potential"].to_numpy(), prediction["alpha"].to_numpy(), strict=True)
+    return [replace(wire, potential=V, alpha=alpha) for V, alpha in each]
+
+
 def _p_of_members(
     members: Sequence[Nanowire],
     measured: Sequence[Measurement],
     noise: FloatArray,
     rng: np.random.Generator,
+    told: Callable[[int], None],
 ) -> float:
     """Return `predictive_p` of an inversion's members, which know the mean of V."""
-    if len(members) < LEAST_MEMBERS:
+    if not members:
         return np.nan
     shown = []
     for m in measured:
-        wires = [replace(wire, barrier=m.barrier) for wire in members]
-        shown.append(simulated(wires, m).reshape(len(wires), -1))
+        each = []
+        for wire in members:
+            each.append(simulated(replace(wire, barrier=m.barrier), m).ravel())
+            told(m.mu.size * m.B.size)
+        shown.append(each)
     data = np.concatenate([m.G.ravel() for m in measured])
     variance = [
         np.broadcast_to(errors_variance(errors), m.G.shape).ravel()
@@ -196,60 +205,3 @@ def control_wires(config: DatasetConfig, count: int, seed: int = 0) -> list[Nano
         )[1]
         wires.append(Nanowire(V, alpha=alpha))
     return wires
-
-
-def _mean_squares(
-    wires: Sequence[Nanowire],
-    measured: Sequence[Measurement],
-    shifts: FloatArray,
-    noise: FloatArray,
-    progress: Progress | None,
-) -> tuple[FloatArray, FloatArray]:
-    """Return mean squared differences in (e²/h)², (wire, measurement, channel), and the shifts."""
-    tilted = np.array([m.theta != 0 for m in measured])
-    deciding = tilted == tilted.all()
-    finer = FINER * np.diff(shifts).min() if shifts.size > 1 else np.empty(0)
-    tries = np.where(deciding, shifts.size + finer.size, 1)
-    in_all = sum(
-        n * len(wires) * m.mu.size * m.B.size for n, m in zip(tries, measured, strict=True)
-    )
-
-    def told(done: int) -> None:
-        if progress is not None:
-            progress(done, in_all)
-
-    first = [m for m, decides in zip(measured, deciding, strict=True) if decides]
-    found = np.array([_of_wire(wire, first, shifts, told) for wire in wires])
-    typical = np.sqrt(np.median(found[1:], axis=(0, 1)))
-    squares = np.empty((len(wires), len(measured), len(CONDUCTANCES)))
-    best = np.empty(len(wires))
-    for w, wire in enumerate(wires):
-        coarse = shifts[scores(found[w], typical, noise[deciding]).argmin()]
-        tried = np.append(shifts, coarse + finer)
-        further = _of_wire(wire, first, coarse + finer, told)
-        at_tried = np.concatenate([found[w], further])
-        chosen = scores(at_tried, typical, noise[deciding]).argmin()
-        best[w], squares[w, deciding] = tried[chosen], at_tried[chosen]
-        others = [m for m, decides in zip(measured, deciding, strict=True) if not decides]
-        squares[w, ~deciding] = _of_wire(wire, others, best[w : w + 1], told)[0]
-    return squares, best
-
-
-def _of_wire(
-    wire: Nanowire,
-    measured: Sequence[Measurement],
-    shifts: FloatArray,
-    told: Callable[[int], None],
-) -> FloatArray:
-    """Return mean squared differences of a wire, shape (shift, measurement, channel)."""
-    squares = np.empty((shifts.size, len(measured), len(CONDUCTANCES)))
-    for i, m in enumerate(measured if shifts.size else []):
-        shifted = np.round(m.mu - shifts[:, None], 9)  # V + δ at μ is V at μ − δ
-        mu, back = np.unique(shifted, return_inverse=True)
-        here = replace(wire, barrier=m.barrier)
-        found = conductance(here, mu, m.B, m.bias, m.temperature, theta=m.theta)
-        for c, name in enumerate(CONDUCTANCES):
-            simulated = found[name].to_numpy()[back.reshape(shifted.shape)]
-            squares[:, i, c] = ((simulated - m.G[..., c]) ** 2).mean(axis=(1, 2, 3))
-        told(shifted.size * m.B.size)
-    return squares

@@ -1,0 +1,112 @@
+"""How unlike measurements are to what wires show, each at the mean of V that suits it best.
+
+The mean of V is none of the paper's labels (S-II.1: it has a standard deviation of 0.01 meV), so
+that a prediction may lack it. It acts as a shift of μ, which an experiment would calibrate, and
+moves levels by more than kT. So each wire is compared at the shift within ±0.03 meV that suits it
+best; the shift is found with the measurements at θ = 0, where there are any: they are simulated
+sooner.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from disorder_landscape.inference.comparison import scores
+from disorder_landscape.inference.measurement import Measurement
+from disorder_landscape.physics.disorder import MEAN_STD
+from disorder_landscape.physics.labels import CONDUCTANCES
+from disorder_landscape.physics.parameters import FloatArray, Nanowire
+from disorder_landscape.physics.transport import conductance
+
+SHIFTS = np.linspace(-3 * MEAN_STD, 3 * MEAN_STD, 13)
+"""Means of V in meV that are tried; the steps are about kT."""
+FINER = np.linspace(-0.8, 0.8, 9)
+"""Then those around the best of them, in units of the step: conductances change within kT."""
+
+
+def simulations(wires: int, measured: Sequence[Measurement], shifts: FloatArray) -> int:
+    """Return how many pairs (μ, B) `mean_squares` simulates."""
+    tries = np.where(_decide(measured), shifts.size + _finer(shifts).size, 1)
+    pairs = np.array([m.mu.size * m.B.size for m in measured])
+    return wires * int(tries @ pairs)
+
+
+def mean_squares(
+    wires: Sequence[Nanowire],
+    measured: Sequence[Measurement],
+    shifts: FloatArray,
+    noise: FloatArray,
+    told: Callable[[int], None],
+) -> tuple[FloatArray, FloatArray]:
+    """Return mean squared differences, and the means of V at which they are the least.
+
+    Parameters
+    ----------
+    wires : sequence of Nanowire
+        The predicted one first, then those with wrong disorder.
+    measured : sequence of Measurement
+    shifts : array, shape (shift,)
+        Means of V in meV that are tried, increasing.
+    noise : array, shape (measurement, channel)
+        Standard deviations of errors in e²/h.
+    told : callable
+        Told how many pairs (μ, B) have just been simulated.
+
+    Returns
+    -------
+    array, shape (wire, measurement, channel)
+        In (e²/h)².
+    array, shape (wire,)
+        In meV.
+    """
+    deciding = _decide(measured)
+    finer = _finer(shifts)
+    first = [m for m, decides in zip(measured, deciding, strict=True) if decides]
+    found = np.array([_of_wire(wire, first, shifts, told) for wire in wires])
+    typical = np.sqrt(np.median(found[1:], axis=(0, 1)))
+    squares = np.empty((len(wires), len(measured), len(CONDUCTANCES)))
+    best = np.empty(len(wires))
+    for w, wire in enumerate(wires):
+        coarse = shifts[scores(found[w], typical, noise[deciding]).argmin()]
+        tried = np.append(shifts, coarse + finer)
+        further = _of_wire(wire, first, coarse + finer, told)
+        at_tried = np.concatenate([found[w], further])
+        chosen = scores(at_tried, typical, noise[deciding]).argmin()
+        best[w], squares[w, deciding] = tried[chosen], at_tried[chosen]
+        others = [m for m, decides in zip(measured, deciding, strict=True) if not decides]
+        squares[w, ~deciding] = _of_wire(wire, others, best[w : w + 1], told)[0]
+    return squares, best
+
+
+def _decide(measured: Sequence[Measurement]) -> NDArray[np.bool_]:
+    """Return which measurements decide on the shift, shape (measurement,)."""
+    tilted = np.array([m.theta != 0 for m in measured])
+    return np.asarray(tilted == tilted.all())
+
+
+def _finer(shifts: FloatArray) -> FloatArray:
+    return FINER * np.diff(shifts).min() if shifts.size > 1 else np.empty(0)
+
+
+def _of_wire(
+    wire: Nanowire,
+    measured: Sequence[Measurement],
+    shifts: FloatArray,
+    told: Callable[[int], None],
+) -> FloatArray:
+    """Return mean squared differences of a wire, shape (shift, measurement, channel)."""
+    squares = np.empty((shifts.size, len(measured), len(CONDUCTANCES)))
+    for i, m in enumerate(measured if shifts.size else []):
+        shifted = np.round(m.mu - shifts[:, None], 9)  # V + δ at μ is V at μ − δ
+        mu, back = np.unique(shifted, return_inverse=True)
+        here = replace(wire, barrier=m.barrier)
+        found = conductance(here, mu, m.B, m.bias, m.temperature, theta=m.theta)
+        for c, name in enumerate(CONDUCTANCES):
+            simulated = found[name].to_numpy()[back.reshape(shifted.shape)]
+            squares[:, i, c] = ((simulated - m.G[..., c]) ** 2).mean(axis=(1, 2, 3))
+        told(shifted.size * m.B.size)
+    return squares
