@@ -90,7 +90,7 @@ report: $(READY) ## claims, figures (those in build/figures) and conventions on 
 	$(VENV_PYTHON) report/build.py
 
 test: $(READY) ## run the tests
-	$(VENV_PYTHON) -m pytest -n 2
+	$(VENV_PYTHON) -m pytest -n 2 --dist worksteal
 
 lint: $(READY) ## check style and types
 	.venv/bin/ruff check .
