@@ -14,7 +14,8 @@ unexport PYTHONPATH PYTHONHOME
 
 # .venv is as it should be where it has this file.  Its name is made of the content of what set-up
 # reads, because the times of files say nothing after a clone or a copy into a container.
-SET_UP_FROM := requirements.lock requirements-uv.lock requirements-zig.lock pyproject.toml scripts/set_up.sh
+SET_UP_FROM := requirements.lock requirements-uv.lock requirements-core.lock requirements-zig.lock \
+  pyproject.toml scripts/set_up.sh CMakeLists.txt $(sort $(shell find core -name '*.[ch]pp'))
 READY := .venv/ready-$(shell cat $(SET_UP_FROM) | sha256sum | cut -c 1-12)
 
 VENV_PYTHON := .venv/bin/python
@@ -29,7 +30,7 @@ COMPILE := .venv/bin/uv pip compile --universal --python-version 3.11 --generate
 STARTED := $(shell date +%s)
 
 .PHONY: help setup generate train evaluate figures $(FIGURES) bench accuracy study inversion-study
-.PHONY: claims claims-table report test lint lock clean
+.PHONY: claims claims-table report test sanitize lint lock clean
 .SUFFIXES:
 # One after the other: each command uses all cores by itself.
 .NOTPARALLEL:
@@ -92,6 +93,9 @@ report: $(READY) ## claims, figures (those in build/figures) and conventions on 
 test: $(READY) ## run the tests
 	$(VENV_PYTHON) -m pytest -n 2 --dist worksteal
 
+sanitize: $(READY) ## run the tests of the compiled core with bad accesses and overflows caught (gcc's g++)
+	@sh scripts/sanitize.sh tests/solver/test_compiled.py
+
 lint: $(READY) ## check style and types
 	.venv/bin/ruff check .
 	.venv/bin/ruff format --check .
@@ -101,6 +105,8 @@ lock: $(READY) ## resolve the versions of the requirements*.lock anew, from pypr
 	$(COMPILE) --extra dev -o requirements.lock pyproject.toml
 	echo uv | $(COMPILE) -o requirements-uv.lock -
 	echo ziglang | $(COMPILE) -o requirements-zig.lock -
+	printf '%s\n' cmake nanobind ninja scikit-build-core \
+	  | $(COMPILE) --constraints requirements.lock -o requirements-core.lock -
 
 clean: ## remove what runs have made (build), not .venv
 	rm -rf build

@@ -1,0 +1,1 @@
+"""The compiled core, and what chooses its variant for this CPU."""
