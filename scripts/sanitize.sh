@@ -25,8 +25,9 @@ rm -rf $wheel
 mkdir -p $wheel
 .venv/bin/python -c "
 from scikit_build_core.build import build_editable
-settings = {'build-dir': 'build/sanitize/core', 'cmake.define.SANITIZE': 'ON'}
-build_editable('$wheel', settings)" >build/sanitize/log 2>&1 || {
+build_editable('$wheel', {
+  'build-dir': 'build/sanitize/core', 'cmake.define.SANITIZE': 'ON', 'install.strip': 'false'
+})" >build/sanitize/log 2>&1 || {
   cat build/sanitize/log >&2
   echo "sanitize: the core could not be built; why is above" >&2
   exit 1
@@ -34,6 +35,7 @@ build_editable('$wheel', settings)" >build/sanitize/log 2>&1 || {
 .venv/bin/uv pip install --quiet --python $own/bin/python --no-cache --no-deps --reinstall $wheel/*.whl
 
 # Python is not made for it: the sanitizers and what throws must be there before Python is, and
-# Python's own memory, which it never returns, is no leak.
+# Python's own memory, which it never returns, is no leak.  The sanitizers write past sys.stderr and
+# end the process: what they say would be lost where pytest had taken the descriptors.
 LD_PRELOAD=${preload# } ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1 \
-  $own/bin/python -m pytest "$@"
+  $own/bin/python -m pytest --capture=sys "$@"
