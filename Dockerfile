@@ -1,17 +1,20 @@
 # docker build -t landscape . && docker run -v "$PWD/out:/artifact/build" landscape figures
 
-# The first stage has the compilers that Kwant needs, and makes .venv just as outside a container.
+# The first stage has the compilers that Kwant and the core need, and makes .venv just as outside a
+# container.
 FROM python:3.11-slim-bookworm AS build
 RUN apt-get update \
  && apt-get install -y --no-install-recommends g++ gcc libc6-dev make \
  && rm -rf /var/lib/apt/lists/*
 WORKDIR /artifact
-COPY Makefile pyproject.toml requirements*.lock LICENSE ./
+COPY Makefile CMakeLists.txt pyproject.toml requirements*.lock LICENSE ./
 COPY scripts scripts
-# The sources come later, so that a change in them does not build Kwant again.  Bytecode is written now,
-# because the user of the second stage cannot write into .venv.
-RUN mkdir -p src/disorder_landscape \
- && touch README.md src/disorder_landscape/__init__.py \
+COPY core core
+# The Python sources come later, so that a change in them does not build Kwant again; until then, the
+# two packages that an editable install is told of are empty.  Bytecode is written now, because the
+# user of the second stage cannot write into .venv.
+RUN mkdir -p src/disorder_landscape/solver \
+ && touch README.md src/disorder_landscape/__init__.py src/disorder_landscape/solver/__init__.py \
  && UV_COMPILE_BYTECODE=1 make setup
 
 FROM python:3.11-slim-bookworm

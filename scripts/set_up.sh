@@ -30,7 +30,8 @@ compiler() {
   for cxx in "${CXX:-$default}" g++ clang++; do
     if command -v "${cxx%% *}" >/dev/null \
       && echo '#include <span>' | $cxx -std=c++20 -fsyntax-only -x c++ - 2>/dev/null; then
-      export CXX="$cxx" LDCXXSHARED="$cxx -shared"
+      export CXX="$cxx"
+      [ "$cxx" = "$default" ] || export LDCXXSHARED="$cxx -shared"
       return
     fi
   done
@@ -84,6 +85,8 @@ else
   touch "$locked"
   wait $core || core_failed
   trap - EXIT
+  # It is large.  Only who changes the core fetches it once more, and keeps it.
+  .venv/bin/uv pip uninstall --quiet --python .venv/bin/python ziglang
 fi
 
 rm -f .venv/ready-*
