@@ -21,8 +21,8 @@ cores=$(getconf _NPROCESSORS_ONLN)
 wheel=build/core/wheel
 log=build/core/log
 
-lock() { .venv/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes -r "$1"; }
 uv() { .venv/bin/uv pip install --python .venv/bin/python "$@"; }
+lock() { uv --quiet --require-hashes --requirements "$1"; }
 
 # Debian's gcc comes without g++, and an old one knows no C++20.  Zig's compiler does it then.
 compiler() {
@@ -70,8 +70,8 @@ else
   rm -rf .venv/ready-* .venv/locked-* build/core
   [ -d .venv ] || "$python" -m venv .venv
 
-  lock requirements-uv.lock
-  uv --quiet --require-hashes --requirements requirements-core.lock
+  .venv/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-uv.lock
+  lock requirements-core.lock
   compiler
 
   # Kwant's build keeps one processor busy; the core takes those that it leaves.
