@@ -1,35 +1,122 @@
 // What Python sees of the core; solver/_core_baseline.pyi has the same with types.
 //
 // CORE_VARIANT and CORE_MODULE are set by CMakeLists.txt: this file is compiled once per variant.
+// Arrays come from solver/compiled.py, which checks them; here only their shapes are trusted.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include <span>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
 
+#include "conductance.hpp"
 #include "processor.hpp"
-#include "values/lanes.hpp"
 
 namespace nb = nanobind;
 
 #define CORE_TEXT(token) CORE_TEXT_OF(token)
 #define CORE_TEXT_OF(token) #token
 
-namespace core::CORE_VARIANT {
+namespace {
 
-using Doubles = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using namespace core;
 
-} // namespace core::CORE_VARIANT
+using Vector = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using Matrix = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+using Array = nb::ndarray<nb::numpy, double, nb::c_contig, nb::device::cpu>;
+
+Array new_array(std::vector<size_t> shape) {
+    size_t size = 1;
+    for (size_t n : shape) size *= n;
+    auto* data = new double[size];
+    nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<double*>(p); });
+    return Array(data, shape.size(), shape.data(), owner);
+}
+
+// The columns of `parameters` are those of solver/compiled.py.
+std::vector<Wire> wires_of(const Matrix& V, const Matrix& parameters) {
+    std::vector<Wire> wires;
+    for (size_t w = 0; w < V.shape(0); ++w) {
+        const double* p = parameters.data() + w * parameters.shape(1);
+        wires.push_back({int(V.shape(1)), V.data() + w * V.shape(1), p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8]});
+    }
+    return wires;
+}
+
+// Run a computation in threads of its own, and look for Ctrl-C ten times a second.
+template <class Work>
+void run(Work work) {
+    Stop stop;
+    std::mutex mutex;
+    std::condition_variable changed;
+    bool done = false;
+    std::exception_ptr failed;
+    std::thread thread([&] {
+        try {
+            work(stop);
+        } catch (...) {
+            failed = std::current_exception();
+        }
+        std::lock_guard lock(mutex);
+        done = true;
+        changed.notify_one();
+    });
+    bool interrupted = false;
+    while (!interrupted) {
+        {
+            nb::gil_scoped_release release;
+            std::unique_lock lock(mutex);
+            if (changed.wait_for(lock, std::chrono::milliseconds(100), [&] { return done; })) break;
+        }
+        interrupted = PyErr_CheckSignals() != 0;
+    }
+    stop.ask();
+    {
+        nb::gil_scoped_release release;
+        thread.join();
+    }
+    if (interrupted) throw nb::python_error();
+    if (failed) std::rethrow_exception(failed);
+}
+
+template <class Solve>
+Array on_grid(const Matrix& V, const Matrix& parameters, const Vector& mu, const Vector& B, const Vector& omega,
+              std::vector<size_t> shape, Solve solve) {
+    std::vector<Wire> wires = wires_of(V, parameters);
+    Grid grid{wires.data(),  int(wires.size()), mu.data(),          B.data(),
+              omega.data(), int(mu.size()),    int(B.size()), int(omega.size())};
+    Array out = new_array(shape);
+    run([&](Stop& stop) { solve(grid, out.data(), stop); });
+    return out;
+}
+
+template <class Arithmetic>
+Array conductance(Matrix V, Matrix parameters, Vector mu, Vector B, Vector omega, double growth_limit) {
+    return on_grid(V, parameters, mu, B, omega, {V.shape(0), mu.size(), B.size(), omega.size(), 2, 4},
+                   [&](const Grid& grid, double* out, Stop& stop) {
+                       bare_conductance<Arithmetic>(grid, growth_limit, out, stop);
+                   });
+}
+
+Array determinant_at_zero(Matrix V, Matrix parameters, Vector mu, Vector B, Vector omega, double growth_limit) {
+    return on_grid(V, parameters, mu, B, omega, {V.shape(0), 2, mu.size(), B.size()},
+                   [&](const Grid& grid, double* out, Stop& stop) {
+                       reflection_determinants(grid, growth_limit, out, stop);
+                   });
+}
+
+}  // namespace
 
 NB_MODULE(CORE_MODULE, m) {
-    namespace here = core::CORE_VARIANT;
     m.def("instruction_set", [] { return CORE_TEXT(CORE_VARIANT); });
-    m.def("supported_variants", &here::supported_variants);
-    m.def(
-        "sum_of_squares",
-        [](const here::Doubles &values) {
-            return here::sum_of_squares(std::span(values.data(), values.size()));
-        },
-        nb::arg("values").noconvert(), nb::call_guard<nb::gil_scoped_release>());
+    m.def("supported_variants", &core::supported_variants);
+    m.def("set_threads", [](int count) { core::thread_count() = std::max(1, count); }, nb::arg("count"));
+    m.def("real_conductance", &conductance<core::RealArithmetic>, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"),
+          nb::arg("B"), nb::arg("omega"), nb::arg("growth_limit"));
+    m.def("complex_conductance", &conductance<core::ComplexArithmetic>, nb::arg("V"), nb::arg("parameters"),
+          nb::arg("mu"), nb::arg("B"), nb::arg("omega"), nb::arg("growth_limit"));
+    m.def("reflection_determinant", &determinant_at_zero, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"),
+          nb::arg("B"), nb::arg("omega"), nb::arg("growth_limit"));
 }

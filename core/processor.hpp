@@ -8,7 +8,7 @@
 #include <cpuid.h>
 #endif
 
-namespace core::CORE_VARIANT {
+namespace core {
 
 #if defined(__x86_64__)
 // __builtin_cpu_supports would do, but Zig's runtime library leaves its answers at "no".
@@ -52,4 +52,4 @@ inline std::vector<std::string> supported_variants() {
     return variants;
 }
 
-} // namespace core::CORE_VARIANT
+} // namespace core

@@ -1,36 +1,155 @@
-// Several numbers at once, as many as a register of this variant's CPU holds.
+// W doubles as one number: a lane is one energy, one pole or one set of its own.
+//
+// A lane never sees another one, so results do not depend on W, nor on which lanes go together.  A
+// vector of W lanes is held in the widest registers of the processor that the file is compiled for;
+// everything that knows processors by name is in this file.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
-#include <span>
+#include <cstring>
 
-namespace core::CORE_VARIANT {
+#include "product.hpp"
 
-#if defined(__AVX512F__)
-inline constexpr std::size_t width = 8;
-#elif defined(__AVX2__)
-inline constexpr std::size_t width = 4;
-#else
-inline constexpr std::size_t width = 2;
+#if defined(__x86_64__)
+#include <immintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
+#elif defined(__wasm_simd128__)
+#include <wasm_simd128.h>
 #endif
 
-// The sum of the squares, in as many partial sums as there are lanes.
-inline double sum_of_squares(std::span<const double> values) {
-    double partial[width] = {};
-    std::size_t i = 0;
-    for (; i + width <= values.size(); i += width) {
-        for (std::size_t lane = 0; lane < width; ++lane) {
-            partial[lane] += values[i + lane] * values[i + lane];
-        }
-    }
-    double sum = 0.0;
-    for (const double part : partial) {
-        sum += part;
-    }
-    for (; i < values.size(); ++i) {
-        sum += values[i] * values[i];
-    }
-    return sum;
+namespace core {
+
+#if defined(__AVX512F__)
+constexpr int REGISTER = 8;
+#elif defined(__AVX2__) && defined(__FMA__)
+constexpr int REGISTER = 4;
+#else
+constexpr int REGISTER = 2;
+#endif
+// Doubles of one register of the processor.
+
+typedef double Register __attribute__((vector_size(8 * REGISTER)));
+typedef long long Mask __attribute__((vector_size(8 * REGISTER)));
+
+namespace hardware {
+
+CORE_INLINE Register multiply_add(Register a, Register b, Register c) {
+#if defined(__AVX512F__)
+    return _mm512_fmadd_pd(a, b, c);
+#elif defined(__AVX2__) && defined(__FMA__)
+    return _mm256_fmadd_pd(a, b, c);
+#elif defined(__aarch64__)
+    return (Register)vfmaq_f64((float64x2_t)c, (float64x2_t)a, (float64x2_t)b);
+#else  // no multiply-add: two roundings
+    return a * b + c;
+#endif
 }
 
-} // namespace core::CORE_VARIANT
+CORE_INLINE Register multiply_subtract(Register a, Register b, Register c) {
+#if defined(__AVX512F__)
+    return _mm512_fnmadd_pd(a, b, c);
+#elif defined(__AVX2__) && defined(__FMA__)
+    return _mm256_fnmadd_pd(a, b, c);
+#elif defined(__aarch64__)
+    return (Register)vfmsq_f64((float64x2_t)c, (float64x2_t)a, (float64x2_t)b);
+#else
+    return c - a * b;
+#endif
+}
+
+CORE_INLINE Register root(Register a) {
+#if defined(__AVX512F__)
+    return _mm512_sqrt_pd(a);
+#elif defined(__AVX2__) && defined(__FMA__)
+    return _mm256_sqrt_pd(a);
+#elif defined(__x86_64__)
+    return (Register)_mm_sqrt_pd((__m128d)a);
+#elif defined(__aarch64__)
+    return (Register)vsqrtq_f64((float64x2_t)a);
+#elif defined(__wasm_simd128__)
+    return (Register)wasm_f64x2_sqrt((v128_t)a);
+#else
+    for (int l = 0; l < REGISTER; ++l) a[l] = std::sqrt(a[l]);
+    return a;
+#endif
+}
+
+CORE_INLINE Register size(Register a) {
+    constexpr long long ALL_BUT_SIGN = 0x7fffffffffffffffLL;
+    return (Register)((Mask)a & (Mask{} + ALL_BUT_SIGN));
+}
+
+}  // namespace hardware
+
+template <int W>
+struct Lanes {
+    static_assert(W % REGISTER == 0);
+    static constexpr int WIDTH = W;
+    static constexpr int REGISTERS = W / REGISTER;
+    Register r[REGISTERS];
+
+    Lanes() = default;
+    CORE_INLINE Lanes(double x) {
+        for (auto& part : r) part = Register{} + x;
+    }
+
+    CORE_INLINE static Lanes load(const double* from) {
+        Lanes x;
+        std::memcpy(x.r, from, sizeof x.r);
+        return x;
+    }
+    CORE_INLINE void store(double* to) const { std::memcpy(to, r, sizeof r); }
+
+    CORE_INLINE double operator[](int lane) const { return r[lane / REGISTER][lane % REGISTER]; }
+    CORE_INLINE void set(int lane, double x) { r[lane / REGISTER][lane % REGISTER] = x; }
+
+    CORE_INLINE Lanes operator-() const { return each([](Register a) { return -a; }, *this); }
+
+    template <class F, class... Some>
+    CORE_INLINE static Lanes each(F f, Some... some) {
+        Lanes x;
+        for (int i = 0; i < REGISTERS; ++i) x.r[i] = f(some.r[i]...);
+        return x;
+    }
+};
+
+template <int W> struct IsNumber<Lanes<W>> { static constexpr bool value = true, of_lanes = true; };
+
+template <int W> CORE_INLINE Lanes<W> plus(Lanes<W> a, Lanes<W> b) {
+    return Lanes<W>::each([](Register x, Register y) { return x + y; }, a, b);
+}
+template <int W> CORE_INLINE Lanes<W> minus(Lanes<W> a, Lanes<W> b) {
+    return Lanes<W>::each([](Register x, Register y) { return x - y; }, a, b);
+}
+template <int W> CORE_INLINE Lanes<W> multiply(Lanes<W> a, Lanes<W> b) {
+    return Lanes<W>::each([](Register x, Register y) { return x * y; }, a, b);
+}
+template <int W> CORE_INLINE Lanes<W> multiply_add(Lanes<W> a, Lanes<W> b, Lanes<W> c) {
+    return Lanes<W>::each(hardware::multiply_add, a, b, c);
+}
+template <int W> CORE_INLINE Lanes<W> multiply_subtract(Lanes<W> a, Lanes<W> b, Lanes<W> c) {
+    return Lanes<W>::each(hardware::multiply_subtract, a, b, c);
+}
+template <int W> CORE_INLINE Lanes<W> inverse(Lanes<W> a) {
+    return Lanes<W>::each([](Register x) { return 1.0 / x; }, a);
+}
+template <int W> CORE_INLINE Lanes<W> root(Lanes<W> a) { return Lanes<W>::each(hardware::root, a); }
+template <int W> CORE_INLINE Lanes<W> size(Lanes<W> a) { return Lanes<W>::each(hardware::size, a); }
+
+// x where a > b, elsewhere, and where one of them is no number, y.
+template <int W>
+CORE_INLINE Lanes<W> where_greater(Lanes<W> a, Lanes<W> b, Lanes<W> x, Lanes<W> y) {
+    return Lanes<W>::each(
+        [](Register p, Register q, Register u, Register v) { return p > q ? u : v; }, a, b, x, y);
+}
+
+// The larger of both; a where one of them is no number, so that NaN in a stays.
+template <int W> CORE_INLINE Lanes<W> larger(Lanes<W> a, Lanes<W> b) {
+    return where_greater(b, a, b, a);
+}
+
+template <int W> CORE_INLINE Lanes<W> value_of(Lanes<W> a) { return a; }
+
+}  // namespace core

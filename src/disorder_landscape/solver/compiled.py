@@ -7,10 +7,14 @@ environment variable DISORDER_LANDSCAPE_CORE names another one.
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from importlib import import_module
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from disorder_landscape.arguments import require
+from disorder_landscape.physics.parameters import FloatArray, Nanowire
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -69,3 +73,68 @@ def chosen() -> str:
 
 if not TYPE_CHECKING:
     core = variant(chosen())
+
+
+GROWTH_LIMIT = 1e7
+"""Largest inverse pivot, or product of couplings, (in units of t') up to which elimination without
+pivoting is trusted: see core/wire/elimination.hpp."""
+
+
+def _handed_over(wires: Sequence[Nanowire]) -> tuple[FloatArray, FloatArray]:
+    """Return the wires' V with barriers, (wire, site), and parameters in the order of core's Wire."""
+    V = np.array([w.potential_with_barriers for w in wires])
+    parameters = [
+        (
+            w.hopping,
+            w.spin_orbit_hopping,
+            w.zeeman_per_tesla,
+            w.gamma,
+            w.delta0,
+            w.lead_mu,
+            w.lead_spin_orbit_hopping,
+            w.lead_zeeman_per_tesla,
+            w.dissipation,
+        )
+        for w in wires
+    ]
+    return V, np.array(parameters)
+
+
+def real_conductance(
+    wires: Sequence[Nanowire],
+    mu: FloatArray,
+    B: FloatArray,
+    omega: FloatArray,
+    growth_limit: float = GROWTH_LIMIT,
+) -> FloatArray:
+    """Return the T = 0 conductances at ±ω below the gap, 0 ≤ ω < Δ₀, without dissipation.
+
+    Returns
+    -------
+    array, shape (wire, mu, B, omega, 2, 4)
+        In e²/h; the last axes are the sign of ω (+, −) and G_LL, G_RR, G_LR, G_RL.
+    """
+    G: FloatArray = core.real_conductance(*_handed_over(wires), mu, B, omega, growth_limit)
+    return G
+
+
+def complex_conductance(
+    wires: Sequence[Nanowire],
+    mu: FloatArray,
+    B: FloatArray,
+    omega: FloatArray,
+    growth_limit: float = GROWTH_LIMIT,
+) -> FloatArray:
+    """Return the same at any real ω ≠ ±Δ₀ of each wire, with dissipation."""
+    G: FloatArray = core.complex_conductance(*_handed_over(wires), mu, B, omega, growth_limit)
+    return G
+
+
+def reflection_determinant(
+    wires: Sequence[Nanowire], mu: FloatArray, B: FloatArray, growth_limit: float = GROWTH_LIMIT
+) -> FloatArray:
+    """Return det r at ω = 0 of both ends, shape (wire, lead, mu, B)."""
+    T: FloatArray = core.reflection_determinant(
+        *_handed_over(wires), mu, B, np.zeros(1), growth_limit
+    )
+    return T

@@ -1,0 +1,102 @@
+// The leads attached to the two end sites, and the probabilities between their channels.
+//
+// With M' of elimination.hpp the end blocks of the Green's function are G = (M' − Σ_L − Σ_R)⁻¹.  The
+// leads give the inverse an imaginary part of one sign, which keeps the pivots of symmetric sweeps
+// away from zero.  Then (Fisher and Lee 1981) the probability from channel set a to b is
+// Tr[Γ_b G_ba Γ_a G_ba†], Γ = −2 Im Σ, which is real symmetric, as Σ is symmetric.
+#pragma once
+
+#include "../values/symmetric8.hpp"
+#include "../wire/elimination.hpp"
+#include "btk.hpp"
+
+namespace core {
+
+template <class R>
+using Ends = Symmetric8<Complex<R>>;
+
+// Σ of the channel sets, each lane with its own: entries 00, 01, 11.
+template <class R>
+struct LaneLeads {
+    Complex<R> of[CHANNELS][3];
+
+    void set(int lane, const LeadSelfEnergy& sigma) {
+        for (int c = 0; c < CHANNELS; ++c)
+            for (int k = 0; k < 3; ++k) {
+                Amplitude value = sigma.of[c](k / 2, (k + 1) / 2);
+                of[c][k].re.set(lane, value.real());
+                of[c][k].im.set(lane, value.imag());
+            }
+    }
+    CORE_INLINE R gamma(int c, int i, int j) const { return -2.0 * of[c][i + j].im; }
+};
+
+template <class R> CORE_INLINE R real_part(R x) { return x; }
+template <class R> CORE_INLINE R real_part(Dual<R> x) { return x.value; }
+template <class R> CORE_INLINE Complex<R> to_complex(R x) { return {x, R(0.0)}; }
+template <class R> CORE_INLINE Complex<R> to_complex(Dual<R> x) { return {x.value, R(0.0)}; }
+template <class R> CORE_INLINE Complex<R> to_complex(Complex<R> x) { return x; }
+
+// M' as one matrix, left end first.
+template <class R, class N>
+CORE_INLINE Ends<R> ends_of(const EndBlocks<N>& s) {
+    Ends<R> M;
+    for (int i = 0; i < 4; ++i) {
+        for (int j = i; j < 4; ++j) M(i, j) = to_complex(s.E(i, j)), M(4 + i, 4 + j) = to_complex(s.D(i, j));
+        for (int j = 0; j < 4; ++j) M(i, 4 + j) = to_complex(s.C(i, j));
+    }
+    return M;
+}
+
+// G of the two end sites with their leads, in units of 1/t'.
+template <class R, class N>
+CORE_INLINE Ends<R> attach_leads(const EndBlocks<N>& s, const LaneLeads<R>& leads) {
+    Ends<R> G = ends_of<R>(s);
+    for (int c = 0; c < CHANNELS; ++c)
+        for (int k = 0; k < 3; ++k) {
+            Complex<R>& entry = G(2 * c + k / 2, 2 * c + (k + 1) / 2);
+            entry = entry - leads.of[c][k];
+        }
+    invert(G);
+    return G;
+}
+
+// Tr[Γ_a G_ab Γ_b G_ab†].
+template <class R>
+CORE_INLINE R probability(const Ends<R>& G, const LaneLeads<R>& leads, int a, int b) {
+    R total = 0.0;
+    for (int i = 0; i < 2; ++i)
+        for (int j = 0; j < 2; ++j) {
+            Complex<R> left = G(2 * a, 2 * b + j) * leads.gamma(a, i, 0) + G(2 * a + 1, 2 * b + j) * leads.gamma(a, i, 1);
+            Complex<R> right = G(2 * a + i, 2 * b) * leads.gamma(b, 0, j) + G(2 * a + i, 2 * b + 1) * leads.gamma(b, 1, j);
+            total = total + left.re * right.re + left.im * right.im;
+        }
+    return total;
+}
+
+template <class R>
+CORE_INLINE Conductances<R> lossless_conductances_of_ends(const Ends<R>& G, const LaneLeads<R>& leads) {
+    R P[4][4];
+    for (int a = 0; a < 4; ++a) {
+        P[a][a] = 0.0;
+        for (int b = 0; b < a; ++b) P[a][b] = P[b][a] = probability(G, leads, a, b);  // G is symmetric
+    }
+    return lossless_conductances(P);
+}
+
+// Where the parent superconductor, or the bath of the wire's levels, absorbs.  With r = −1 + iΓ^½GΓ^½,
+// N − Tr rr† = −2 Im Tr ΓG − Tr ΓGΓG†, closed channels included.
+template <class R>
+CORE_INLINE Conductances<R> lossy_conductances_of_ends(const Ends<R>& G, const LaneLeads<R>& leads) {
+    R P[4][4], net[4];
+    for (int a = 0; a < 4; ++a) {
+        for (int b = 0; b <= a; ++b) P[a][b] = P[b][a] = probability(G, leads, a, b);
+        R absorbed = 0.0;
+        for (int i = 0; i < 2; ++i)
+            for (int j = 0; j < 2; ++j) absorbed = absorbed - leads.gamma(a, i, j) * G(2 * a + j, 2 * a + i).im;
+        net[a] = 2.0 * absorbed - P[a][a];
+    }
+    return conductances(P, net);
+}
+
+}  // namespace core

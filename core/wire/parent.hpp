@@ -1,0 +1,37 @@
+// The parent superconductor's self-energy, Σ(ω) = −γ(ω + Δ₀τx)/√(Δ₀²−ω²) (below Eq. S1).
+#pragma once
+
+#include "../values/dual.hpp"
+#include "wire.hpp"
+
+namespace core {
+
+// ω − Σ(ω) = normal + anomalous τx, and their derivatives by ω, all in meV; |ω| < Δ₀.
+struct Pairing {
+    double normal, anomalous, normal_slope, anomalous_slope;
+
+    Pairing(const Wire& wire, double omega) {
+        double root = std::sqrt(wire.delta0 * wire.delta0 - omega * omega), cube = root * root * root;
+        normal = omega + wire.gamma * omega / root;
+        anomalous = wire.gamma * wire.delta0 / root;
+        normal_slope = 1 + wire.gamma / root + wire.gamma * omega * omega / cube;
+        anomalous_slope = wire.gamma * wire.delta0 * omega / cube;
+    }
+};
+
+// The same at any real ω ≠ ±Δ₀, with the broadening iΓ of the wire's levels.  Above the gap
+// √(Δ₀²−ω²) is −i sgn(ω) √(ω²−Δ₀²), the retarded branch.
+struct RetardedPairing {
+    Complex<double> normal, anomalous;
+
+    RetardedPairing(const Wire& wire, double omega) {
+        double size = std::sqrt(std::abs(wire.delta0 * wire.delta0 - omega * omega));
+        Complex<double> root(size, 0.0);
+        if (std::abs(omega) > wire.delta0) root = Complex<double>(0.0, omega > 0 ? -size : size);
+        Complex<double> over = inverse(root);
+        normal = Complex<double>(omega, wire.dissipation) + over * (wire.gamma * omega);
+        anomalous = over * (wire.gamma * wire.delta0);
+    }
+};
+
+}  // namespace core
