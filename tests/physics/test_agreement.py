@@ -7,7 +7,14 @@ from numpy.testing import assert_allclose
 from scipy.optimize import brentq
 
 from disorder_landscape import Nanowire, conductance, topological_visibility
-from disorder_landscape.physics import fast_solver, hamiltonian, kwant_solver, leads
+from disorder_landscape.physics import (
+    above_gap,
+    fast_solver,
+    hamiltonian,
+    kwant_solver,
+    leads,
+    tilted_field,
+)
 from random_wires import energies, fields, mus, random_wire, seeds
 
 
@@ -148,3 +155,54 @@ def test_finite_temperature_is_the_same_average_for_both_solvers():
     kwant = conductance(wire, **grids, energy_spacing=4e-3, solver="kwant")
     for name in fast.data_vars:
         assert_allclose(fast[name], kwant[name], atol=1e-10)
+
+
+def partly_trivial(sites, topological):
+    """Return a wire in which µ is beyond the topological phase past some site."""
+    V = np.zeros(sites)
+    V[topological:] = 300.0
+    return Nanowire(V, alpha=20.0)
+
+
+MAJORANAS = {
+    "600 sites": (Nanowire(np.zeros(600)), 0.3),
+    "800 sites": (Nanowire(np.zeros(800)), 0.3),
+    "strong": (
+        Nanowire(np.zeros(300), alpha=30.0, g=60.0, gamma=1.0, barrier=(100.0, 100.0)),
+        1.0,
+    ),
+    "disorder": (Nanowire(np.random.default_rng(1).normal(0, 0.3, 600), alpha=20.0), 0.5),
+    "a part": (partly_trivial(330, 300), 0.5),
+}
+"""Wires at µ = 0 and a field, in which moderate pivots hid the loss of all digits at ω = 0."""
+
+
+@pytest.mark.parametrize("name", MAJORANAS)
+def test_majorana_modes_leave_enough_digits_at_zero_energy(name):
+    wire, B = MAJORANAS[name]
+    arguments = [wire], np.zeros(1), np.array([B])
+    omega = np.array([0.0])
+    kwant = kwant_solver.bare_conductance(*arguments, omega)
+    trusting = fast_solver.bare_conductance(*arguments, omega, growth_limit=np.inf)
+    assert abs(trusting - kwant).max() > 1e-11  # so the check is needed here
+    for found in (
+        fast_solver.bare_conductance(*arguments, omega),
+        above_gap.bare_conductance(*arguments, omega),
+        tilted_field.bare_conductance(*arguments, omega, 1e-15),
+    ):
+        assert_allclose(found, kwant, atol=1e-11)
+    assert_allclose(
+        fast_solver.reflection_determinant(*arguments),
+        kwant_solver.reflection_determinant(*arguments),
+        atol=1e-11,
+    )
+
+
+def test_paper_wires_are_seldom_pivoted():
+    """At most one lane in a thousand, at ω = 0, where Majorana modes are: pivoting is slow."""
+    wires = [Nanowire(np.zeros(300))] + [random_wire(i) for i in range(4)]
+    grid = wires, np.linspace(0, 0.6, 15), np.linspace(0, 0.8, 15), np.zeros(1)
+    differ = fast_solver.bare_conductance(*grid) != fast_solver.bare_conductance(
+        *grid, growth_limit=np.inf
+    )
+    assert differ.any(axis=(-1, -2)).mean() < 1e-3
