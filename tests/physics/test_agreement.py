@@ -206,3 +206,9 @@ def test_paper_wires_are_seldom_pivoted():
         *grid, growth_limit=np.inf
     )
     assert differ.any(axis=(-1, -2)).mean() < 1e-3
+
+
+def test_a_lead_near_its_band_edge_has_modes_for_electrons_or_holes_alone():
+    wire = Nanowire(np.random.default_rng(3).normal(0, 0.5, 20), lead_mu=0.02, gamma=0.3)
+    fast, kwant = both(wire, 0.3, 0.0, 0.05)
+    assert_allclose(fast, kwant, atol=1e-8)
