@@ -139,9 +139,21 @@ class _Average:
         wires, theta = [self.wire], self.theta
         F = tilted_field.isolated_green_functions(wires, mu, self.B, z, theta)[0, 0]
         bare = tilted_field.bare_conductance(wires, mu, self.B, self.real, theta)[0, :, 0]
-        some = [self._of_wire(*isolated_wire(z, F[m]), bare[m]) for m in range(mu.size)]
+        some = [self._of_set(z, F[m], bare[m]) for m in range(mu.size)]
         G, error = (np.array(part) for part in zip(*some, strict=True))
         return G, np.where(np.isfinite(G).all(axis=(1, 2)), error, np.inf)
+
+    def _of_set(
+        self, z: ComplexArray, F: ComplexArray, bare: FloatArray
+    ) -> tuple[FloatArray, float]:
+        """Return G(V), shape (bias, 4), and its estimated error; infinite where there is no model.
+
+        So it is where poles of few sites without a parent coincide and share their eigenvector.
+        """
+        try:
+            return self._of_wire(*isolated_wire(z, F), bare)
+        except np.linalg.LinAlgError:
+            return np.full((self.bias.size, 4), np.nan), np.inf
 
     def _of_wire(self, A: FloatArray, u: FloatArray, bare: FloatArray) -> tuple[FloatArray, float]:
         """Return G(V), shape (bias, 4), and its estimated error; bare: (real, 2, 4)."""
