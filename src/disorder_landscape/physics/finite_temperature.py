@@ -3,8 +3,8 @@
 For one wire, μ and B: the end Green's function and its slope at M energies (`recursion`), the
 levels of the isolated wire (`levels`), the poles with the leads attached (`pole_starts`,
 `inverse_iteration`, `resonances`), their residues (`residues`), the closed-form averages
-(`thermal_poles`). A few further energies check the model; where it is off by more than the
-tolerance, M grows.
+(`thermal_poles`). A few further energies check the model, some the same for all sets, some where
+its own levels are densest (`dense_levels`); where it is off by more than the tolerance, M grows.
 
 What bounds it: see `recursion` for the solver. The algebra of the levels works on WIDTH sets at
 once and moves matrices of some 50 × 50 through the second cache; the poles of one set are WIDTH at
@@ -21,19 +21,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from disorder_landscape.physics.compilation import compile_kernels
+from disorder_landscape.physics.dense_levels import dense_energies
 from disorder_landscape.physics.dressing import CUBIC, Leads, leads_between
 from disorder_landscape.physics.ends import end_green_functions, lane_conductances
-from disorder_landscape.physics.energy_plan import CHECKS, EnergyPlan, energy_plan
+from disorder_landscape.physics.energy_plan import (
+    CHECKS,
+    COMPARED,
+    SOUGHT,
+    EnergyPlan,
+    energy_plan,
+)
 from disorder_landscape.physics.fast_solver import GROWTH_LIMIT, Problem, load_lanes, prepare
 from disorder_landscape.physics.hamiltonian import ComplexArray
+from disorder_landscape.physics.leads import fill_self_energies, rotate_spin
 from disorder_landscape.physics.levels import isolated_end_green_function, to_chiral, wire_levels
 from disorder_landscape.physics.parameters import BOLTZMANN, FloatArray, Nanowire
 from disorder_landscape.physics.rational_average import rational_average
 from disorder_landscape.physics.recursion import (
+    ANOMALOUS,
     ANOMALOUS_SLOPE,
     GROWTH,
+    KINETIC,
     LANES,
+    NORMAL,
     NORMAL_SLOPE,
+    STATE,
     STATE_WITH_SLOPES,
     eliminate_inner_sites,
     eliminate_inner_sites_with_slopes,
@@ -95,8 +107,9 @@ class _Solved(NamedTuple):
 
     isolated: FloatArray  # (WIDTH, node, 8, 8)
     slope: FloatArray  # (WIDTH, node, 8, 8)
-    green: ComplexArray  # (WIDTH, CHECKS, 8, 8), leads attached, at the checks
-    bare: FloatArray  # (WIDTH, node + CHECKS, 2, 4), conductances at ±ω
+    green: ComplexArray  # (WIDTH, COMPARED, 8, 8), leads attached, at the checks
+    bare: FloatArray  # (WIDTH, node + COMPARED, 2, 4), conductances at ±ω
+    sought: FloatArray  # (WIDTH, SOUGHT), the sets' own checks in meV
     growth: FloatArray  # (WIDTH,)
 
 
@@ -142,6 +155,40 @@ def _solve(
 
 
 @nb.njit(cache=True)
+def _solve_sought(
+    p: Problem, plan: EnergyPlan, sets: NDArray[np.int64], first: int, data: _Solved
+) -> None:  # pragma: no cover
+    """Add the solver's data at the sets' own checks, as `_solve` does at those of all."""
+    w, f, mu = sets[0, 0], sets[0, 1], sets[:, 2]
+    s, re, im = np.empty(STATE * LANES), np.empty(64 * LANES), np.empty(64 * LANES)
+    energy, omega = np.arange(LANES), np.empty(LANES)
+    sigma = np.empty((LANES, 2, 2, 2, 2), dtype=np.complex128)
+    gamma, delta0 = plan.parent[w]
+    hopping, spin_orbit, zeeman, lead_mu = plan.leads[w]
+    total = mu.size * SOUGHT
+    for piece in range(0, total, LANES):
+        for l in range(LANES):
+            pair = min(piece + l, total - 1)
+            omega[l] = data.sought[first + pair // SOUGHT, pair % SOUGHT]
+            root = np.sqrt(delta0**2 - omega[l] ** 2)
+            s[KINETIC * LANES + l] = p.kinetic[w, mu[pair // SOUGHT]]
+            s[NORMAL * LANES + l] = omega[l] * (1 + gamma / root) / plan.hop[w]
+            s[ANOMALOUS * LANES + l] = gamma * delta0 / root / plan.hop[w]
+        fill_self_energies(omega, hopping, spin_orbit, zeeman * plan.B[f], lead_mu, sigma)
+        rotate_spin(sigma, plan.turn[w])
+        sigma /= plan.hop[w]
+        eliminate_inner_sites(s, p.V[w], p.zeeman_x[w, f], p.zeeman_z[w, f])
+        end_green_functions(s, sigma, energy, re, im)
+        for l in range(min(LANES, total - piece)):
+            i, e = first + (piece + l) // SOUGHT, CHECKS + (piece + l) % SOUGHT
+            growth = s[GROWTH * LANES + l]
+            if not growth <= data.growth[i]:  # so that NaN spreads
+                data.growth[i] = growth
+            lane_conductances(re, im, sigma[l], l, data.bare[i, plan.nodes + e])
+            _chiral_green_function(re, im, l, plan.hop[w], data.green[i, e])
+
+
+@nb.njit(cache=True)
 def _leads(p: Problem, plan: EnergyPlan, w: int, f: int) -> Leads:  # pragma: no cover
     """Return the leads of wire w at field f."""
     at_picks = np.empty((CUBIC, 8, 8), dtype=np.complex128)
@@ -184,6 +231,7 @@ def _average_sets(
                 leads,
                 data.green[at],
                 data.bare[at],
+                data.sought[at],
                 out[w, f, mu],
             )
         error[w, f, mu] = estimate
@@ -214,8 +262,9 @@ def _calculate(
     data = _Solved(
         np.empty((W, m, 8, 8)),
         np.empty((W, m, 8, 8)),
-        np.empty((W, CHECKS, 8, 8), dtype=np.complex128),
-        np.empty((W, m + CHECKS, 2, 4)),
+        np.empty((W, COMPARED, 8, 8), dtype=np.complex128),
+        np.empty((W, m + COMPARED, 2, 4)),
+        np.empty((W, SOUGHT)),
         np.empty(W),
     )
     first = 0
@@ -232,6 +281,10 @@ def _calculate(
     while first < count:
         last = _end_of_group(sets, first)
         some = sets[first:last]
+        for i in range(first, last):
+            hop = plan.hop[sets[i, 0]]
+            dense_energies(some_E[i], some_weight[i], hop, plan.window, data.sought[i])
+        _solve_sought(p, plan, some, first, data)
         _average_sets(p, plan, growth_limit, some, data, first, some_E, some_weight, out, error)
         first = last
 
@@ -283,11 +336,11 @@ def thermal_conductance(
     sets = _where(np.ones(shape, dtype=bool))
     earlier: list[FloatArray] = []
     for nodes in NODES:
-        plan = energy_plan(wires, bias, kT, nodes)
+        plan = energy_plan(wires, B, bias, kT, nodes)
         found, estimate = np.full_like(G, np.nan), np.full(shape, np.inf)
         _kernel(prepare(wires, mu, B, plan.omega), plan, growth_limit, sets, found, estimate)
         found[~np.isfinite(estimate)] = np.nan
-        energies[tuple(sets.T)] += plan.omega.size
+        energies[tuple(sets.T)] += nodes + COMPARED
         for other in earlier:  # NaN agrees with nothing
             apart = AGREEMENT * abs(found - other).max(axis=(-1, -2))
             estimate = np.where(apart < estimate, np.sqrt(apart * estimate), estimate)
