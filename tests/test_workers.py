@@ -24,8 +24,7 @@ def test_workers_end_with_a_killed_parent(tmp_path):
         f"new.write_text(str(os.getpid())); new.rename({str(started)!r}); time.sleep(600)"
     )
     script = (
-        "from disorder_landscape.workers import each_result;"
-        f"list(each_result(exec, [{task!r}], 1))"
+        f"from disorder_landscape.workers import each_result;list(each_result(exec, [{task!r}], 1))"
     )
     parent = subprocess.Popen([sys.executable, "-c", script])
 
