@@ -218,7 +218,7 @@ def test_a_lead_near_its_band_edge_has_modes_for_electrons_or_holes_alone():
 @pytest.mark.parametrize("lead_alpha", [0.0, 1e-3, 8.0, 30.0])
 @pytest.mark.parametrize("off", [0.0, 1e-12, -1e-9, 1e-6])
 def test_self_energies_hold_at_band_edges_and_crossings(B, lead_alpha, off):
-    """Where 1 − cos k and the spinors lost digits: Σ = T g T† with g = (E − H₀ − Σ)⁻¹ of the lead."""
+    """Where 1 − cos k and the spinors lost digits: Σ = T g T†, g = (E − H₀ − Σ)⁻¹ of the lead."""
     start = Nanowire(np.zeros(2), lead_alpha=lead_alpha)
     t, s, zeeman = start.hopping, start.lead_spin_orbit_hopping, start.lead_zeeman_per_tesla * B
     lowest = 2 * t - 2 * np.hypot(t, s)
@@ -233,7 +233,7 @@ def test_self_energies_hold_at_band_edges_and_crossings(B, lead_alpha, off):
 
 
 def test_the_outgoing_modes_are_those_that_decay_a_little_above_the_axis():
-    """Of leads of all sizes: at E + iη all four modes decay to one side, and two of them outwards."""
+    """At E + iη all four modes of a lead decay to one side or the other, two of them outwards."""
     rng = np.random.default_rng(6)
     for _ in range(200):
         t = 10 ** rng.uniform(-1, 3)

@@ -85,8 +85,6 @@ def energy_plan(
                 for w in wires
             ]
         ),
-        turn=np.array(
-            [np.arctan2(w.spin_orbit_hopping, w.hopping) * (w.sites - 1) for w in wires]
-        ),
+        turn=np.array([np.arctan2(w.spin_orbit_hopping, w.hopping) * (w.sites - 1) for w in wires]),
         B=B,
     )

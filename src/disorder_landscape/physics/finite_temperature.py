@@ -117,7 +117,7 @@ class _Solved(NamedTuple):
 def _solve(
     p: Problem, plan: EnergyPlan, sets: NDArray[np.int64], first: int, data: _Solved
 ) -> None:  # pragma: no cover
-    """Fill data from set `first` on for sets of one wire and field, shape (set, 3)."""
+    """Fill data at the nodes from set `first` on for sets of one wire and field, shape (set, 3)."""
     w, f, mu = sets[0, 0], sets[0, 1], sets[:, 2]
     s = np.empty(STATE_WITH_SLOPES * LANES)
     re, im = np.empty(64 * LANES), np.empty(64 * LANES)
@@ -125,65 +125,82 @@ def _solve(
     V, zeeman_x, zeeman_z, sigma = p.V[w], p.zeeman_x[w, f], p.zeeman_z[w, f], p.sigma[w, f]
     for i in range(mu.size):
         data.growth[first + i] = 0.0
-    for checking in range(2):
-        each = CHECKS if checking else plan.nodes
-        total = mu.size * each
-        for piece in range(0, total, LANES):
-            for l in range(LANES):
-                pair = min(piece + l, total - 1)
-                at_mu[l], energy[l] = mu[pair // each], pair % each + checking * plan.nodes
-            load_lanes(p, w, at_mu, energy, s)
-            if checking:
-                eliminate_inner_sites(s, V, zeeman_x, zeeman_z)
-            else:
-                _load_slopes(plan, w, energy, s)
-                eliminate_inner_sites_with_slopes(s, V, zeeman_x, zeeman_z)
-            end_green_functions(s, sigma, energy, re, im)
-            for l in range(min(LANES, total - piece)):
-                i, e = first + (piece + l) // each, energy[l]
-                growth = s[GROWTH * LANES + l]
-                if not growth <= data.growth[i]:  # so that NaN spreads
-                    data.growth[i] = growth
-                lane_conductances(re, im, sigma[e], l, data.bare[i, e])
-                if checking:
-                    at = data.green[i, e - plan.nodes]
-                    _chiral_green_function(re, im, l, plan.hop[w], at)
-                else:
-                    isolated_end_green_function(
-                        s, l, plan.hop[w], data.isolated[i, e], data.slope[i, e]
-                    )
-
-
-@nb.njit(cache=True)
-def _solve_sought(
-    p: Problem, plan: EnergyPlan, sets: NDArray[np.int64], first: int, data: _Solved
-) -> None:  # pragma: no cover
-    """Add the solver's data at the sets' own checks, as `_solve` does at those of all."""
-    w, f, mu = sets[0, 0], sets[0, 1], sets[:, 2]
-    s, re, im = np.empty(STATE * LANES), np.empty(64 * LANES), np.empty(64 * LANES)
-    energy, omega = np.arange(LANES), np.empty(LANES)
-    sigma = np.empty((LANES, 2, 2, 2, 2), dtype=np.complex128)
-    gamma, delta0 = plan.parent[w]
-    hopping, spin_orbit, zeeman, lead_mu = plan.leads[w]
-    total = mu.size * SOUGHT
+    total = mu.size * plan.nodes
     for piece in range(0, total, LANES):
         for l in range(LANES):
             pair = min(piece + l, total - 1)
-            omega[l] = data.sought[first + pair // SOUGHT, pair % SOUGHT]
-            root = np.sqrt(delta0**2 - omega[l] ** 2)
-            s[KINETIC * LANES + l] = p.kinetic[w, mu[pair // SOUGHT]]
-            s[NORMAL * LANES + l] = omega[l] * (1 + gamma / root) / plan.hop[w]
-            s[ANOMALOUS * LANES + l] = gamma * delta0 / root / plan.hop[w]
-        fill_self_energies(omega, hopping, spin_orbit, zeeman * plan.B[f], lead_mu, sigma)
-        rotate_spin(sigma, plan.turn[w])
-        sigma /= plan.hop[w]
+            at_mu[l], energy[l] = mu[pair // plan.nodes], pair % plan.nodes
+        load_lanes(p, w, at_mu, energy, s)
+        _load_slopes(plan, w, energy, s)
+        eliminate_inner_sites_with_slopes(s, V, zeeman_x, zeeman_z)
+        end_green_functions(s, sigma, energy, re, im)
+        for l in range(min(LANES, total - piece)):
+            i, e = first + (piece + l) // plan.nodes, energy[l]
+            _take_growth(s, l, data.growth[i : i + 1])
+            lane_conductances(re, im, sigma[e], l, data.bare[i, e])
+            isolated_end_green_function(s, l, plan.hop[w], data.isolated[i, e], data.slope[i, e])
+
+
+@nb.njit(cache=True)
+def _take_growth(s: FloatArray, lane: int, growth: FloatArray) -> None:  # pragma: no cover
+    """Replace a set's growth by that of one of its lanes if it is larger."""
+    grown = s[GROWTH * LANES + lane]
+    if not grown <= growth[0]:  # so that NaN spreads
+        growth[0] = grown
+
+
+@nb.njit(cache=True)
+def _load_check(
+    p: Problem,
+    plan: EnergyPlan,
+    at: tuple[int, int, int],
+    check: int,
+    sought: FloatArray,
+    lane: int,
+    s: FloatArray,
+    sigma: ComplexArray,
+) -> None:  # pragma: no cover
+    """Write one lane's terms and its leads' Σ, shape (1, 2, 2, 2, 2), at a check of set `at`."""
+    w, f, mu = at
+    s[KINETIC * LANES + lane] = p.kinetic[w, mu]
+    if check < CHECKS:
+        e = plan.nodes + check
+        s[NORMAL * LANES + lane], s[ANOMALOUS * LANES + lane] = p.normal[w, e], p.anomalous[w, e]
+        sigma[0] = p.sigma[w, f, e]
+        return
+    k, hop = check - CHECKS, plan.hop[w]
+    gamma, delta0 = plan.parent[w]
+    root = np.sqrt(delta0**2 - sought[k] ** 2)
+    s[NORMAL * LANES + lane] = sought[k] * (1 + gamma / root) / hop
+    s[ANOMALOUS * LANES + lane] = gamma * delta0 / root / hop
+    hopping, spin_orbit, zeeman, lead_mu = plan.leads[w]
+    omega = sought[k : k + 1]
+    fill_self_energies(omega, hopping, spin_orbit, zeeman * plan.B[f], lead_mu, sigma)
+    rotate_spin(sigma, plan.turn[w])
+    sigma /= hop
+
+
+@nb.njit(cache=True)
+def _solve_checks(
+    p: Problem, plan: EnergyPlan, sets: NDArray[np.int64], first: int, data: _Solved
+) -> None:  # pragma: no cover
+    """Add the solver's data at the checks, once the sets' own are known."""
+    w, f = sets[0, 0], sets[0, 1]
+    s, re, im = np.empty(STATE * LANES), np.empty(64 * LANES), np.empty(64 * LANES)
+    energy, sigma = np.arange(LANES), np.empty((LANES, 2, 2, 2, 2), dtype=np.complex128)
+    total = sets.shape[0] * COMPARED
+    for piece in range(0, total, LANES):
+        for l in range(LANES):
+            pair = min(piece + l, total - 1)
+            i = pair // COMPARED
+            at = w, f, sets[i, 2]
+            sought = data.sought[first + i]
+            _load_check(p, plan, at, pair % COMPARED, sought, l, s, sigma[l : l + 1])
         eliminate_inner_sites(s, p.V[w], p.zeeman_x[w, f], p.zeeman_z[w, f])
         end_green_functions(s, sigma, energy, re, im)
         for l in range(min(LANES, total - piece)):
-            i, e = first + (piece + l) // SOUGHT, CHECKS + (piece + l) % SOUGHT
-            growth = s[GROWTH * LANES + l]
-            if not growth <= data.growth[i]:  # so that NaN spreads
-                data.growth[i] = growth
+            i, e = first + (piece + l) // COMPARED, (piece + l) % COMPARED
+            _take_growth(s, l, data.growth[i : i + 1])
             lane_conductances(re, im, sigma[l], l, data.bare[i, plan.nodes + e])
             _chiral_green_function(re, im, l, plan.hop[w], data.green[i, e])
 
@@ -284,7 +301,7 @@ def _calculate(
         for i in range(first, last):
             hop = plan.hop[sets[i, 0]]
             dense_energies(some_E[i], some_weight[i], hop, plan.window, data.sought[i])
-        _solve_sought(p, plan, some, first, data)
+        _solve_checks(p, plan, some, first, data)
         _average_sets(p, plan, growth_limit, some, data, first, some_E, some_weight, out, error)
         first = last
 

@@ -37,7 +37,9 @@ from disorder_landscape.physics.parameters import FloatArray, Nanowire
 
 
 @nb.njit(cache=True, error_model="numpy")
-def _apart(middle: float, r: complex, product: float) -> tuple[complex, complex]:  # pragma: no cover
+def _apart(
+    middle: float, r: complex, product: float
+) -> tuple[complex, complex]:  # pragma: no cover
     """Return middle + r and middle − r, whose product is given, r ≥ 0 or imaginary."""
     plus, minus = middle + r, middle - r
     if r.imag == 0.0 and r.real > 0.0:
@@ -49,7 +51,9 @@ def _apart(middle: float, r: complex, product: float) -> tuple[complex, complex]
 
 
 @nb.njit(cache=True, error_model="numpy")
-def _outgoing(x: complex, y: complex, forwards: bool) -> tuple[complex, complex]:  # pragma: no cover
+def _outgoing(
+    x: complex, y: complex, forwards: bool
+) -> tuple[complex, complex]:  # pragma: no cover
     """Return λ and 2i sin k of the outgoing mode with cos k = 1 − x = y − 1.
 
     `forwards` tells whether of two propagating modes the one with sin k > 0 is outgoing.
@@ -74,7 +78,8 @@ def outgoing_without_field(
     hop = np.sqrt(t * t + s * s)
     below = (E + lead_mu + 2 * (hop - t)) / (2 * hop)  # 1 − cos k
     above = (4 * t - E - lead_mu + 2 * (hop - t)) / (2 * hop)
-    return -hop * _outgoing(complex(below), complex(above), True)[0]
+    sigma: complex = -hop * _outgoing(complex(below), complex(above), True)[0]
+    return sigma
 
 
 @nb.njit(cache=True, error_model="numpy")

@@ -24,7 +24,7 @@ from disorder_landscape.physics.parameters import FloatArray
 from disorder_landscape.physics.pole_starts import start_poles
 from disorder_landscape.physics.residues import Terms, conductance_terms, sum_poles
 from disorder_landscape.physics.resonances import find_poles
-from disorder_landscape.physics.thermal_poles import average_poles, interpolated
+from disorder_landscape.physics.thermal_poles import average_poles
 from disorder_landscape.physics.vectors import WIDTH, everywhere, read, write
 
 ROUGHNESS = 10.0
@@ -76,10 +76,10 @@ def rational_average(
     terms = conductance_terms(poles, order, paired, levels, leads, b)
     checks = np.empty(COMPARED)
     checks[:CHECKS], checks[CHECKS:] = plan.omega[m:], sought
-    total = 2 * (m + COMPARED)
-    signed = np.zeros((total + WIDTH - 1) // WIDTH * WIDTH)  # full vectors
+    end = 2 * (m + COMPARED)
+    signed = np.zeros((end + WIDTH - 1) // WIDTH * WIDTH)  # full vectors
     signed[: 2 * m] = plan.signed[: 2 * m]
-    signed[2 * m : total - COMPARED], signed[total - COMPARED : total] = checks, -checks
+    signed[2 * m : end - COMPARED], signed[end - COMPARED : end] = checks, -checks
     smooth = np.empty((4, signed.size))
     sum_poles(signed, terms, smooth)
     for c in range(4):
@@ -98,6 +98,7 @@ def rational_average(
     average_poles(terms, plan.bias, plan.kT, out)
     counts = _shares_that_count(checks, plan.kT, terms)
     of_model = SAFETY * hop * _mismatch(checks, levels, leads, green, counts, b)
+    counts[CHECKS:] = np.sqrt(counts[CHECKS:])
     rough = ROUGHNESS * _roughness(_at_checks(plan, sought), smooth, counts)
     return float(of_model if of_model > rough else rough)
 
@@ -109,8 +110,9 @@ def _shares_that_count(
     """Return what part of a difference at each check the average can have.
 
     A pole misplaced by δ shows as v²δ/(ω − z)² and counts as v²δ/(kT)² in the average: so a
-    difference is scaled down where a pole is nearer than kT. Where levels are dense, the whole
-    pattern of poles may be another, each with its v²/(ω − z) that counts as v²/kT.
+    difference is scaled down where a pole is nearer than kT. (Where levels are dense, the whole
+    pattern of poles may be another, each with its v²/(ω − z) that counts as v²/kT: of the
+    conductance there the square root of this is taken.)
     """
     shares = np.empty(COMPARED)
     for k in range(COMPARED):
@@ -118,21 +120,31 @@ def _shares_that_count(
         for n in range(terms.zr.size):
             apart = (checks[k] - terms.zr[n]) ** 2 + terms.zi[n] ** 2
             nearest = min(nearest, apart)
-        shares[k] = nearest / kT**2 if k < CHECKS else np.sqrt(nearest) / kT
+        shares[k] = nearest / kT**2
     return shares
 
 
 @nb.njit(cache=True, error_model="numpy")
 def _at_checks(plan: EnergyPlan, sought: FloatArray) -> FloatArray:  # pragma: no cover
-    """Return the weights of the smooth part's values at the nodes for those at ±checks."""
-    weights = np.empty((2 * COMPARED, 2 * plan.nodes))
-    own = interpolated(
-        np.concatenate((sought, -sought)).reshape(-1, 1) / plan.window, np.ones(1), plan.nodes
-    )
+    """Return the weights of the smooth part's values at the nodes for those at ±checks.
+
+    At the set's own by the barycentric formula, in which Chebyshev's node u has ±√(1 − u²).
+    """
+    both = 2 * plan.nodes
+    weights = np.empty((2 * COMPARED, both))
     for sign in range(2):
-        at, of_all, of_set = sign * COMPARED, sign * CHECKS, sign * SOUGHT
+        at, of_all = sign * COMPARED, sign * CHECKS
         weights[at : at + CHECKS] = plan.at_checks[of_all : of_all + CHECKS]
-        weights[at + CHECKS : at + COMPARED] = own[of_set : of_set + SOUGHT]
+        for k in range(SOUGHT):
+            row, total = weights[at + CHECKS + k], 0.0
+            omega = sought[k] if sign == 0 else -sought[k]
+            for n in range(both):
+                u = plan.signed[n] / plan.window
+                row[n] = np.sqrt(1 - u * u) / (omega / plan.window - u)
+                if (n % plan.nodes + n // plan.nodes) % 2 == 1:
+                    row[n] = -row[n]
+                total += row[n]
+            row /= total
     return weights
 
 

@@ -48,10 +48,10 @@ NORMAL_SLOPE, ANOMALOUS_SLOPE = 76, 77
 STATE_WITH_SLOPES = 78
 LOOK_EVERY = 4
 """Sites from one look at C to the next; the last site is looked at, too. In 8,000 wires (50 to 900
-sites, α to 40 meV nm, a part of them of another µ, mostly at ω = 0), beside those that rounding of µ
-alone changes, a limit of 10⁷ leaves errors up to 1.3e-7 e²/h, and 1.2e-6 with a look at every sixth
-site; the last C alone would leave 2. None of 50,000 lanes of the paper's wires is beyond it. A look
-at every fourth site costs 5 % of the elimination, 1 % with slopes."""
+sites, α to 40 meV nm, a part of them of another µ, mostly at ω = 0), beside those that roundings of
+µ alone change, a limit of 10⁷ leaves errors up to 1.3e-7 e²/h, and 1.2e-6 with a look at every
+sixth site; the last C alone would leave 2. None of 50,000 lanes of the paper's wires is beyond it.
+A look at every fourth site costs 5 % of the elimination, 1 % with slopes."""
 FASTMATH = {"contract", "nsz", "arcp"}
 
 

@@ -92,7 +92,7 @@ def _kernel_rule() -> tuple[FloatArray, FloatArray]:
 
 
 @nb.njit(cache=True)
-def interpolated(u: FloatArray, share: FloatArray, nodes: int) -> FloatArray:  # pragma: no cover
+def _interpolated(u: FloatArray, share: FloatArray, nodes: int) -> FloatArray:  # pragma: no cover
     """Return the weights, shape (row, 2 · node), of the values at ω_k, then −ω_k.
 
     They give Σ_x share_x f(W u_x) of the polynomial f through these values; u has shape (row, x).
@@ -129,9 +129,9 @@ def thermal_node_weights(bias: FloatArray, kT: float, window: float, nodes: int)
     """
     x, dx = _kernel_rule()
     u = np.clip((bias[:, None] + kT * x) / window, -1, 1)
-    return np.asarray(interpolated(u, dx / dx.sum(), nodes))
+    return np.asarray(_interpolated(u, dx / dx.sum(), nodes))
 
 
 def interpolation_weights(u: FloatArray, nodes: int) -> FloatArray:
     """Return the weights, shape (u, 2 · node), of the values at ω_k, then −ω_k, for those at uW."""
-    return np.asarray(interpolated(u[:, None], np.ones(1), nodes))
+    return np.asarray(_interpolated(u[:, None], np.ones(1), nodes))

@@ -184,7 +184,7 @@ class _Average:
         width = np.finfo(np.float64).eps * abs(eigenvalues).max()
         near, decay = abs(eigenvalues) < FAR * self.window, eigenvalues.real
         if (decay[near] > FEEDS * self.window).any():
-            return np.full(1, np.nan + 0j), np.zeros((1, 4))
+            return np.full(1, np.nan + 0j), np.zeros((1, 4), dtype=np.complex128)
         z = -eigenvalues.imag + 1j * np.where(near, np.minimum(decay, -width), decay)
         a = (BASIS @ (u @ V)).T  # (pole, 8)
         b = np.linalg.solve(V, np.linalg.solve(N, u.T)) @ BASIS.conj().T

@@ -106,9 +106,7 @@ def _electron_self_energies(
     return sigma
 
 
-def _without_spin_orbit(
-    wire: Nanowire, along: float, across: float, E: FloatArray
-) -> ComplexArray:
+def _without_spin_orbit(wire: Nanowire, along: float, across: float, E: FloatArray) -> ComplexArray:
     """Return the same of leads whose spin is along the field, or against it, at every energy."""
     straight = np.empty((E.size, 2, 2), dtype=np.complex128)
     size = float(np.hypot(along, across))

@@ -11,7 +11,8 @@ from __future__ import annotations
 import numba as nb
 import numpy as np
 
-from disorder_landscape.physics.complex_recursion import WIDTH, look_at_coupling
+from disorder_landscape.physics.complex_recursion import WIDTH as WIDTH
+from disorder_landscape.physics.complex_recursion import look_at_coupling
 from disorder_landscape.physics.parameters import FloatArray
 from disorder_landscape.physics.recursion import LOOK_EVERY
 
