@@ -222,7 +222,7 @@ def _group(measured: dict[str, FloatArray]) -> dict[str, Any]:
     """Return the numbers of one kind of wire; a set is one wire with its five biases."""
     error, estimate, energies = (measured[name] for name in ("error", "estimate", "energies"))
     worst = error.max(axis=(1, 2))
-    checks = finite_temperature.CHECKS
+    checks = finite_temperature.COMPARED
     most = sum(nodes + checks for nodes in finite_temperature.NODES)
     rational = energies <= most
     numbers, sets = np.unique(energies[rational], return_counts=True)

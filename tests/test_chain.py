@@ -18,6 +18,10 @@ R2_TO_REACH = 0.87
 """Measured: 0.913 to 0.921, three seeds; the paper's network, 1/16 wide, on 1,080 short wires."""
 
 
+LARGEST_RATIO = 0.5
+"""Of 30 predictions of the shipped network the largest is 0.17, a median one 0.045."""
+
+
 def predicted_wire(one):
     return Nanowire(one.potential_predicted, alpha=one.alpha_predicted.item())
 
@@ -52,23 +56,29 @@ def test_the_reduced_run_reaches_its_score(run):
     )
 
 
-def test_the_predicted_wire_conducts_like_the_true_one(run):
-    """The point of the paper: the prediction's conductance is closer than another wire's."""
-    evaluation = xr.load_dataset(run.evaluation_file, engine="h5netcdf")
-    closer = 0
+def test_the_predicted_wire_conducts_like_the_true_one(tmp_path):
+    """The point of the paper: the prediction's conductance is closer than another wire's.
+
+    Of the shipped network, R² = 0.994: what the training of a test makes depends on the machine.
+    """
+    evaluation = chain.evaluation(chain.preset_run("shipped", tmp_path, chain.FIVE))
+    ratios = []
     for i in range(10):
+        one, following = evaluation.isel(realization=i), evaluation.isel(realization=i + 1)
         true, other, guess = (
-            conductance(wire, run.config.dataset.mu, run.config.dataset.B)[list(CONDUCTANCES)]
+            conductance(wire, np.linspace(0, 0.6, 8), np.linspace(0, 0.8, 8), [0.0, 0.02])[
+                list(CONDUCTANCES)
+            ]
             .to_array()
             .to_numpy()
             for wire in (
-                realization(run.config.dataset, 1080 + i).wire,
-                realization(run.config.dataset, 1081 + i).wire,
-                predicted_wire(evaluation.isel(realization=i)),
+                Nanowire(one.potential, alpha=one.alpha.item()),
+                Nanowire(following.potential, alpha=following.alpha.item()),
+                predicted_wire(one),
             )
         )
-        closer += np.linalg.norm(true - guess) < 0.7 * np.linalg.norm(true - other)
-    assert closer >= 9
+        ratios.append(np.linalg.norm(true - guess) / np.linalg.norm(true - other))
+    assert max(ratios) < LARGEST_RATIO
 
 
 def test_status_tells_what_is_there(run, build):

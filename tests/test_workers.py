@@ -14,34 +14,38 @@ def test_every_task_has_its_result():
     assert sorted(each_result(abs, [-3, 1, -2], 2)) == [1, 2, 3]
 
 
-@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="asks Linux for the children")
-def test_workers_end_with_a_killed_parent():
+@pytest.mark.skipif(not Path("/proc/self/cmdline").exists(), reason="asks Linux for processes")
+def test_workers_end_with_a_killed_parent(tmp_path):
+    """Waits for each condition, however busy the machine, and fails only after minutes."""
+    started = tmp_path / "started"
+    task = (
+        "import os, pathlib, time;"
+        f"new = pathlib.Path({str(tmp_path / 'new')!r});"
+        f"new.write_text(str(os.getpid())); new.rename({str(started)!r}); time.sleep(600)"
+    )
     script = (
-        "import time; from disorder_landscape.workers import each_result;"
-        "list(each_result(time.sleep, [300], 1))"
+        f"from disorder_landscape.workers import each_result;list(each_result(exec, [{task!r}], 1))"
     )
     parent = subprocess.Popen([sys.executable, "-c", script])
-    listed = Path(f"/proc/{parent.pid}/task/{parent.pid}/children")
 
-    def sleeps(process):
-        """Whether it is the worker, which has imported what it needs, and not the tracker."""
-        status = Path(f"/proc/{process}/status")
-        return status.exists() and b"spawn_main" in Path(f"/proc/{process}/cmdline").read_bytes()
+    def goes_on():
+        """Whether the worker is there; of one that has ended nothing but its entry may be left."""
+        try:
+            return b"spawn_main" in Path(f"/proc/{started.read_text()}/cmdline").read_bytes()
+        except FileNotFoundError:
+            return False
 
     try:
-        workers = []
-        for _ in range(300):
-            workers = [child for child in listed.read_text().split() if sleeps(child)]
-            if workers:
-                break
-            time.sleep(0.1)
-        time.sleep(3)
+        wait_for(started.exists)
+        assert goes_on()
     finally:
         parent.kill()
         parent.wait()
-    assert workers
-    for _ in range(100):
-        if not any(map(sleeps, workers)):
-            return
-        time.sleep(0.1)
-    pytest.fail("a worker goes on")
+    wait_for(lambda: not goes_on())
+
+
+def wait_for(condition, seconds=180):
+    deadline = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < deadline
+        time.sleep(0.05)

@@ -7,7 +7,14 @@ from numpy.testing import assert_allclose
 from scipy.optimize import brentq
 
 from disorder_landscape import Nanowire, conductance, topological_visibility
-from disorder_landscape.physics import fast_solver, hamiltonian, kwant_solver, leads
+from disorder_landscape.physics import (
+    above_gap,
+    fast_solver,
+    hamiltonian,
+    kwant_solver,
+    leads,
+    tilted_field,
+)
 from random_wires import energies, fields, mus, random_wire, seeds
 
 
@@ -148,3 +155,100 @@ def test_finite_temperature_is_the_same_average_for_both_solvers():
     kwant = conductance(wire, **grids, energy_spacing=4e-3, solver="kwant")
     for name in fast.data_vars:
         assert_allclose(fast[name], kwant[name], atol=1e-10)
+
+
+def partly_trivial(sites, topological):
+    """Return a wire in which µ is beyond the topological phase past some site."""
+    V = np.zeros(sites)
+    V[topological:] = 300.0
+    return Nanowire(V, alpha=20.0)
+
+
+MAJORANAS = {
+    "600 sites": (Nanowire(np.zeros(600)), 0.3),
+    "800 sites": (Nanowire(np.zeros(800)), 0.3),
+    "strong": (
+        Nanowire(np.zeros(300), alpha=30.0, g=60.0, gamma=1.0, barrier=(100.0, 100.0)),
+        1.0,
+    ),
+    "disorder": (Nanowire(np.random.default_rng(1).normal(0, 0.3, 600), alpha=20.0), 0.5),
+    "a part": (partly_trivial(330, 300), 0.5),
+}
+"""Wires at µ = 0 and a field, in which moderate pivots hid the loss of all digits at ω = 0."""
+
+
+@pytest.mark.parametrize("name", MAJORANAS)
+def test_majorana_modes_leave_enough_digits_at_zero_energy(name):
+    wire, B = MAJORANAS[name]
+    arguments = [wire], np.zeros(1), np.array([B])
+    omega = np.array([0.0])
+    kwant = kwant_solver.bare_conductance(*arguments, omega)
+    trusting = fast_solver.bare_conductance(*arguments, omega, growth_limit=np.inf)
+    assert abs(trusting - kwant).max() > 1e-11  # so the check is needed here
+    for found in (
+        fast_solver.bare_conductance(*arguments, omega),
+        above_gap.bare_conductance(*arguments, omega),
+        tilted_field.bare_conductance(*arguments, omega, 1e-15),
+    ):
+        assert_allclose(found, kwant, atol=1e-11)
+    assert_allclose(
+        fast_solver.reflection_determinant(*arguments),
+        kwant_solver.reflection_determinant(*arguments),
+        atol=1e-11,
+    )
+
+
+def test_paper_wires_are_seldom_pivoted():
+    """At most one lane in a thousand, at ω = 0, where Majorana modes are: pivoting is slow."""
+    wires = [Nanowire(np.zeros(300))] + [random_wire(i) for i in range(4)]
+    grid = wires, np.linspace(0, 0.6, 15), np.linspace(0, 0.8, 15), np.zeros(1)
+    differ = fast_solver.bare_conductance(*grid) != fast_solver.bare_conductance(
+        *grid, growth_limit=np.inf
+    )
+    assert differ.any(axis=(-1, -2)).mean() < 1e-3
+
+
+def test_a_lead_near_its_band_edge_has_modes_for_electrons_or_holes_alone():
+    wire = Nanowire(np.random.default_rng(3).normal(0, 0.5, 20), lead_mu=0.02, gamma=0.3)
+    fast, kwant = both(wire, 0.3, 0.0, 0.05)
+    assert_allclose(fast, kwant, atol=1e-8)
+
+
+@pytest.mark.parametrize("B", [0.0, 0.3, 1e-9])
+@pytest.mark.parametrize("lead_alpha", [0.0, 1e-3, 8.0, 30.0])
+@pytest.mark.parametrize("off", [0.0, 1e-12, -1e-9, 1e-6])
+def test_self_energies_hold_at_band_edges_and_crossings(B, lead_alpha, off):
+    """Where 1 − cos k and the spinors lost digits: Σ = T g T†, g = (E − H₀ − Σ)⁻¹ of the lead."""
+    start = Nanowire(np.zeros(2), lead_alpha=lead_alpha)
+    t, s, zeeman = start.hopping, start.lead_spin_orbit_hopping, start.lead_zeeman_per_tesla * B
+    lowest = 2 * t - 2 * np.hypot(t, s)
+    for edge in (zeeman, -zeeman, 4 * t + zeeman, 4 * t - zeeman, lowest, 4 * t - lowest):
+        wire = Nanowire(np.zeros(2), lead_alpha=lead_alpha, lead_mu=edge + off)
+        sigma = leads.lead_self_energies(wire, B, np.zeros(1))[0, 1, 0]
+        T = np.array([[-t, -s], [s, -t]])
+        onsite = (2 * t - wire.lead_mu) * np.eye(2) + zeeman * np.array([[0, 1], [1, 0]])
+        expected = T @ np.linalg.inv(-onsite - sigma) @ T.T
+        assert_allclose(sigma, expected, rtol=0, atol=1e-11 * t)
+        assert (np.linalg.eigvalsh(-2 * sigma.imag) > -1e-11 * t).all()  # outgoing
+
+
+def test_the_outgoing_modes_are_those_that_decay_a_little_above_the_axis():
+    """At E + iη all four modes of a lead decay to one side or the other, two of them outwards."""
+    rng = np.random.default_rng(6)
+    for _ in range(200):
+        t = 10 ** rng.uniform(-1, 3)
+        s, zeeman = t * 10 ** rng.uniform(-4, 1), t * 10 ** rng.uniform(-4, 0.3)
+        mu = rng.choice([0.0, 4 * t, 2 * t]) + t * rng.choice([-1, 1]) * 10 ** rng.uniform(-3, 0)
+        sigma = np.empty((2, 2), dtype=complex)
+        leads.electron_self_energy(0.0, t, s, zeeman, mu, sigma)
+        T = np.array([[-t, -s], [s, -t]], dtype=complex)
+        H = (2 * t - mu) * np.eye(2) + zeeman * np.array([[0, 1], [1, 0]])
+        step, back, surface = T.copy(), T.T.copy(), H - 1e-9j * t * np.eye(2)
+        bulk = surface.copy()
+        for _ in range(60):  # decimation, at which the lead is twice as long each time
+            inverse = np.linalg.inv(-bulk)
+            surface = surface + step @ inverse @ back
+            bulk = bulk + step @ inverse @ back + back @ inverse @ step
+            step, back = step @ inverse @ step, back @ inverse @ back
+        expected = T @ np.linalg.inv(-surface) @ T.T
+        assert_allclose(sigma, expected, rtol=0, atol=2e-4 * np.hypot(t, s))

@@ -8,7 +8,7 @@ from scipy.linalg import eigh
 from scipy.optimize import brentq
 
 from disorder_landscape.physics import eigen, finite_temperature, jacobi
-from disorder_landscape.physics.energy_plan import CHECKS, energy_plan
+from disorder_landscape.physics.energy_plan import COMPARED, SOUGHT, energy_plan
 from disorder_landscape.physics.fast_solver import prepare
 from disorder_landscape.physics.hamiltonian import wire_hamiltonian
 from disorder_landscape.physics.levels import _complete_low_levels, wire_levels
@@ -150,13 +150,14 @@ def test_low_levels_are_completed(E, found, true):
 def test_the_levels_are_those_of_the_hamiltonian(mu, B):
     """Which depends on the energy: E is a level where H(E) has the eigenvalue E."""
     wire = random_wire(2, sites=60)
-    plan = energy_plan([wire], np.array(BIAS), BOLTZMANN * 0.05, 12)
+    plan = energy_plan([wire], np.array([B]), np.array(BIAS), BOLTZMANN * 0.05, 12)
     m = plan.nodes
     data = finite_temperature._Solved(
         np.empty((WIDTH, m, 8, 8)),
         np.empty((WIDTH, m, 8, 8)),
-        np.empty((WIDTH, CHECKS, 8, 8), dtype=complex),
-        np.empty((WIDTH, m + CHECKS, 2, 4)),
+        np.empty((WIDTH, COMPARED, 8, 8), dtype=complex),
+        np.empty((WIDTH, m + COMPARED, 2, 4)),
+        np.empty((WIDTH, SOUGHT)),
         np.empty(WIDTH),
     )
     problem = prepare([wire], np.array([mu]), np.array([B]), plan.omega)

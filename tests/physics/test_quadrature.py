@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.special import expit
 
-from disorder_landscape import Nanowire
+from disorder_landscape import Nanowire, conductance
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.physics import fast_solver, quadrature
 from disorder_landscape.physics.parameters import BOLTZMANN
@@ -104,3 +104,14 @@ def test_a_grid_is_its_points_one_by_one():
 def test_a_temperature_that_is_not_positive_is_refused(temperature):
     with pytest.raises(ArgumentError, match="temperature must be positive"):
         thermal(random_wire(0), 0.1, 0.1, temperature)
+
+
+def test_what_is_no_number_has_an_infinite_error_and_a_warning(monkeypatch):
+    def failing(wires, mu, B, omega):
+        return np.full((len(wires), mu.size, B.size, omega.size, 2, 4), np.nan)
+
+    monkeypatch.setattr(fast_solver, "bare_conductance", failing)
+    found = thermal(random_wire(1, sites=10), 0.3, 0.5, 0.05)
+    assert found.error == np.inf
+    with pytest.warns(RuntimeWarning, match="At 1 of 1 points"):
+        conductance(random_wire(1, sites=10), 0.3, 0.5, temperature=0.0)

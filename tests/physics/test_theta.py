@@ -292,3 +292,55 @@ def test_a_wrong_angle_is_one_sentence(theta):
     for function in (conductance, topological_visibility):
         with pytest.raises(ArgumentError, match=r"^Argument theta must be a number .* radians"):
             function(Nanowire(np.zeros(10)), 0.1, 0.2, theta=theta)
+
+
+@pytest.mark.parametrize("B", [5.6e-17, 1e-9, 1e-5])
+def test_in_a_tiny_field_leads_without_spin_orbit_keep_their_digits(B):
+    """Spins degenerate to rounding: np.arange gives 5.6e-17 for zero; G_LL was 3.64."""
+    wire = Nanowire(np.zeros(300), lead_alpha=0.0)
+    found = bare(wire, 0.05, B, 0.03, 0.3)
+    assert_allclose(found, bare(wire, 0.05, B, 0.03, 0.3, solver=kwant_solver), atol=1e-8)
+    arguments = [wire], np.array([0.05]), np.array([B]), BIAS, 0.05
+    G, error, _ = exact_average(*arguments, theta=0.3)
+    straight, also_wrong, _ = exact_average(*arguments)
+    assert_allclose(G, straight, rtol=0, atol=(error + also_wrong).item() + 2 * B)
+
+
+@pytest.mark.parametrize("lead_alpha", [0.0, 1e-6, 1e-2, 8.0])
+@pytest.mark.parametrize("B", [1e-17, 1e-10, 1e-6, 1e-3, 0.5])
+def test_self_energies_solve_their_equation_at_any_field(lead_alpha, B):
+    """Σ = T g T† with g = (E − H₀ − Σ)⁻¹ of the lead, outgoing."""
+    wire = Nanowire(np.zeros(2), lead_alpha=lead_alpha)
+    t, s = wire.hopping, wire.lead_spin_orbit_hopping
+    omega, theta = np.array([0.0, 0.03, -0.07]), 0.3
+    T = np.array([[-t, -s], [s, -t]])
+    zeeman = hamiltonian.zeeman(wire.lead_zeeman_per_tesla * B, theta)[:2, :2]
+    onsite = (2 * t - wire.lead_mu) * np.eye(2) + zeeman
+    found = tilted_lead_self_energies(wire, B, omega, theta)[:, :, 0]
+    for E, pair in zip(omega, found, strict=True):
+        for sigma, hop in zip(pair, (T.T, T), strict=True):
+            expected = hop @ np.linalg.inv(E * np.eye(2) - onsite - sigma) @ hop.T
+            assert_allclose(sigma, expected, rtol=0, atol=1e-11 * t)
+            gamma = 1j * (sigma - sigma.conj().T)
+            assert (np.linalg.eigvalsh(gamma) > -1e-11 * t).all()
+
+
+@pytest.mark.parametrize(
+    ("seed", "sites", "lead_mu"), [(1, 2, 50.0), (2, 3, 50.0), (3, 7, 1.0), (4, 20, 50.0)]
+)
+def test_poles_far_outside_the_window_are_left_to_the_smooth_part(seed, sites, lead_mu):
+    """Σ as linear in the energy fed some of them, and residues of 1e15 cancelled in the sum."""
+    rng = np.random.default_rng([12, seed])
+    wire = Nanowire(rng.normal(0, 0.5, sites), lead_mu=lead_mu, barrier=(0.0, 0.0))
+    arguments = [wire], np.array([0.3]), np.array([0.4]), BIAS, 0.05
+    G, error, _ = tilted_average.thermal_conductance(*arguments, theta=0.7)
+    exact = thermal_quadrature(*arguments, theta=0.7)
+    assert abs(G - exact.conductance).max() <= 3 * error.item() + exact.error.item()
+
+
+def test_two_sites_without_a_parent_along_the_spin_orbit_field():
+    wire = Nanowire(np.zeros(2), gamma=0.0)
+    arguments = [wire], np.array([0.3]), np.array([0.4]), BIAS, 0.05
+    G, error, _ = exact_average(*arguments, theta=np.pi / 2)
+    exact = thermal_quadrature(*arguments, theta=np.pi / 2)
+    assert abs(G - exact.conductance).max() <= 3 * error.item() + exact.error.item()

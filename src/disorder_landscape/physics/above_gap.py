@@ -23,7 +23,8 @@ from disorder_landscape.physics.pivoted import pivoted_end_green_functions
 from disorder_landscape.physics.recursion import LANES
 
 GROWTH_LIMIT = 1e7
-"""Largest inverse pivot (in units of 1/t') up to which elimination without pivoting is trusted."""
+"""Largest inverse pivot, or product of couplings, (in units of t') up to which elimination without
+pivoting is trusted."""
 
 
 def retarded_pairing_factors(

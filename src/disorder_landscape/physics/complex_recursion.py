@@ -3,7 +3,7 @@
 The counterpart of `recursion` (same frame, units and order) for energies above the gap, where Σ(ω)
 is complex: rows instead of sites are eliminated, in loops instead of written-out scalars. Im M is
 positive definite there, so elimination needs no pivoting; where M is real, or almost, the largest
-inverse pivot tells how many digits were lost.
+inverse pivot and the products of |C| tell how many digits were lost, as in `recursion`.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import numba as nb
 import numpy as np
 
 from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.physics.recursion import LOOK_EVERY
 
 WIDTH = 16
 """(μ, ω) pairs that one call advances together."""
@@ -73,6 +74,22 @@ def _add_onsite_row(
 
 
 @nb.njit(cache=True)
+def look_at_coupling(
+    s: FloatArray, last: FloatArray, growth: FloatArray
+) -> None:  # pragma: no cover
+    """Count the product of the largest |C|² at the last look and now among the lost digits."""
+    L = WIDTH
+    for l in range(L):
+        now = 0.0
+        for a in range(4):
+            for b in range(4, 8):
+                at = (16 * a + 2 * b) * L + l
+                now = max(now, s[at] ** 2 + s[at + L] ** 2)
+        growth[l] = max(growth[l], last[l] * now)
+        last[l] = now
+
+
+@nb.njit(cache=True)
 def eliminate_inner_sites_complex(
     V: FloatArray,
     zeeman_x: FloatArray,
@@ -98,10 +115,11 @@ def eliminate_inner_sites_complex(
         On return the 8×8 matrix, left end first; entry (a, b), a ≤ b, of lane l has its real part
         at [(16a + 2b)·WIDTH + l] and its imaginary part WIDTH further on.
     growth : array, shape (WIDTH,)
-        On return the largest |p|² met.
+        On return the largest |p|², or product of the largest |C|² at one look and at the next.
     """
     s[:] = 0.0
     growth[:] = 0.0
+    coupling = np.ones(WIDTH)
     for site in range(V.size):
         for i in range(4):
             k, sign = (i if site == 0 else i + 4), (1.0 if i < 2 else -1.0)
@@ -110,3 +128,5 @@ def eliminate_inner_sites_complex(
             elif site > 1:
                 _eliminate_row(s, k, sign, growth)
             _add_onsite_row(s, k, sign, V[site], zeeman_x[site], zeeman_z[site], terms)
+        if site > 1 and (site % LOOK_EVERY == 0 or site == V.size - 1):
+            look_at_coupling(s, coupling, growth)

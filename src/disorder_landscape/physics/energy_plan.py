@@ -16,10 +16,12 @@ from disorder_landscape.physics.thermal_poles import (
     interpolation_weights,
     thermal_node_weights,
 )
-from disorder_landscape.physics.vectors import WIDTH
 
 CHECKS = 4
-"""Energies at which the model is compared with the solver."""
+"""Energies, the same for all sets, at which the model is compared with the solver."""
+SOUGHT = 2
+"""Further ones, each set's own: where its levels are densest (`dense_levels`)."""
+COMPARED = CHECKS + SOUGHT
 LOWEST = 0.2
 """The lowest of them, where the nodes are at k + ½ and zero is 0: below all nodes, where levels lie
 that the nodes hardly see. (Without it 13 of 96,000 sets were off by more than 10⁻⁴ e²/h.)"""
@@ -31,7 +33,7 @@ class EnergyPlan(NamedTuple):
     nodes: int
     window: float  # W in meV
     omega: FloatArray  # (node + CHECKS,) in meV
-    signed: FloatArray  # nodes, −nodes, checks, −checks; zeros up to a full vector
+    signed: FloatArray  # nodes, −nodes, checks, −checks
     picks: NDArray[np.int64]  # (CUBIC,) nodes through which Σ is interpolated
     cubic: FloatArray  # (CUBIC, CUBIC), inverse of their Vandermonde matrix
     weights: FloatArray  # (bias, 2 · node), of the smooth part's values at ω_k, then −ω_k
@@ -40,9 +42,15 @@ class EnergyPlan(NamedTuple):
     kT: float
     slopes: FloatArray  # (wire, 2, node + CHECKS): of the normal and anomalous terms
     hop: FloatArray  # (wire,)
+    parent: FloatArray  # (wire, 2), γ and Δ₀ in meV
+    leads: FloatArray  # (wire, 4), hopping, α/2a, V_Z/B and μ of the leads
+    turn: FloatArray  # (wire,), by which the rotated frame is turned at the right end
+    B: FloatArray  # (B,)
 
 
-def energy_plan(wires: Sequence[Nanowire], bias: FloatArray, kT: float, nodes: int) -> EnergyPlan:
+def energy_plan(
+    wires: Sequence[Nanowire], B: FloatArray, bias: FloatArray, kT: float, nodes: int
+) -> EnergyPlan:
     """Plan the energies for these wires and biases with `nodes` nodes and CHECKS checks."""
     window = abs(bias).max() + REACH * kT
     between = np.append(LOWEST, np.arange(1, CHECKS) * (nodes - 1) // CHECKS)
@@ -61,7 +69,7 @@ def energy_plan(wires: Sequence[Nanowire], bias: FloatArray, kT: float, nodes: i
         nodes=nodes,
         window=window,
         omega=omega,
-        signed=np.pad(signed, (0, -signed.size % WIDTH)),
+        signed=signed,
         picks=picks,
         cubic=np.linalg.inv(np.vander(omega[picks], CUBIC, increasing=True)),
         weights=thermal_node_weights(bias, kT, window, nodes),
@@ -70,4 +78,13 @@ def energy_plan(wires: Sequence[Nanowire], bias: FloatArray, kT: float, nodes: i
         kT=kT,
         slopes=slopes,
         hop=hop,
+        parent=np.array([(w.gamma, w.delta0) for w in wires]),
+        leads=np.array(
+            [
+                (w.hopping, w.lead_spin_orbit_hopping, w.lead_zeeman_per_tesla, w.lead_mu)
+                for w in wires
+            ]
+        ),
+        turn=np.array([np.arctan2(w.spin_orbit_hopping, w.hopping) * (w.sites - 1) for w in wires]),
+        B=B,
     )

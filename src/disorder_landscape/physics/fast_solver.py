@@ -30,7 +30,8 @@ from disorder_landscape.physics.recursion import (
 )
 
 GROWTH_LIMIT = 1e7
-"""Largest inverse pivot (in units of 1/t') up to which real elimination is trusted."""
+"""Largest inverse pivot, or product of couplings, (in units of t') up to which real elimination is
+trusted: see `recursion.LOOK_EVERY`."""
 
 
 PairingFactors = Callable[[Nanowire, Any], tuple[Any, Any]]

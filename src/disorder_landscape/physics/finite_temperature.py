@@ -3,8 +3,8 @@
 For one wire, μ and B: the end Green's function and its slope at M energies (`recursion`), the
 levels of the isolated wire (`levels`), the poles with the leads attached (`pole_starts`,
 `inverse_iteration`, `resonances`), their residues (`residues`), the closed-form averages
-(`thermal_poles`). A few further energies check the model; where it is off by more than the
-tolerance, M grows.
+(`thermal_poles`). A few further energies check the model, some the same for all sets, some where
+its own levels are densest (`dense_levels`); where it is off by more than the tolerance, M grows.
 
 What bounds it: see `recursion` for the solver. The algebra of the levels works on WIDTH sets at
 once and moves matrices of some 50 × 50 through the second cache; the poles of one set are WIDTH at
@@ -21,19 +21,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from disorder_landscape.physics.compilation import compile_kernels
+from disorder_landscape.physics.dense_levels import dense_energies
 from disorder_landscape.physics.dressing import CUBIC, Leads, leads_between
 from disorder_landscape.physics.ends import end_green_functions, lane_conductances
-from disorder_landscape.physics.energy_plan import CHECKS, EnergyPlan, energy_plan
+from disorder_landscape.physics.energy_plan import (
+    CHECKS,
+    COMPARED,
+    SOUGHT,
+    EnergyPlan,
+    energy_plan,
+)
 from disorder_landscape.physics.fast_solver import GROWTH_LIMIT, Problem, load_lanes, prepare
 from disorder_landscape.physics.hamiltonian import ComplexArray
+from disorder_landscape.physics.leads import fill_self_energies, rotate_spin
 from disorder_landscape.physics.levels import isolated_end_green_function, to_chiral, wire_levels
 from disorder_landscape.physics.parameters import BOLTZMANN, FloatArray, Nanowire
 from disorder_landscape.physics.rational_average import rational_average
 from disorder_landscape.physics.recursion import (
+    ANOMALOUS,
     ANOMALOUS_SLOPE,
     GROWTH,
+    KINETIC,
     LANES,
+    NORMAL,
     NORMAL_SLOPE,
+    STATE,
     STATE_WITH_SLOPES,
     eliminate_inner_sites,
     eliminate_inner_sites_with_slopes,
@@ -95,8 +107,9 @@ class _Solved(NamedTuple):
 
     isolated: FloatArray  # (WIDTH, node, 8, 8)
     slope: FloatArray  # (WIDTH, node, 8, 8)
-    green: ComplexArray  # (WIDTH, CHECKS, 8, 8), leads attached, at the checks
-    bare: FloatArray  # (WIDTH, node + CHECKS, 2, 4), conductances at ±ω
+    green: ComplexArray  # (WIDTH, COMPARED, 8, 8), leads attached, at the checks
+    bare: FloatArray  # (WIDTH, node + COMPARED, 2, 4), conductances at ±ω
+    sought: FloatArray  # (WIDTH, SOUGHT), the sets' own checks in meV
     growth: FloatArray  # (WIDTH,)
 
 
@@ -104,7 +117,7 @@ class _Solved(NamedTuple):
 def _solve(
     p: Problem, plan: EnergyPlan, sets: NDArray[np.int64], first: int, data: _Solved
 ) -> None:  # pragma: no cover
-    """Fill data from set `first` on for sets of one wire and field, shape (set, 3)."""
+    """Fill data at the nodes from set `first` on for sets of one wire and field, shape (set, 3)."""
     w, f, mu = sets[0, 0], sets[0, 1], sets[:, 2]
     s = np.empty(STATE_WITH_SLOPES * LANES)
     re, im = np.empty(64 * LANES), np.empty(64 * LANES)
@@ -112,33 +125,84 @@ def _solve(
     V, zeeman_x, zeeman_z, sigma = p.V[w], p.zeeman_x[w, f], p.zeeman_z[w, f], p.sigma[w, f]
     for i in range(mu.size):
         data.growth[first + i] = 0.0
-    for checking in range(2):
-        each = CHECKS if checking else plan.nodes
-        total = mu.size * each
-        for piece in range(0, total, LANES):
-            for l in range(LANES):
-                pair = min(piece + l, total - 1)
-                at_mu[l], energy[l] = mu[pair // each], pair % each + checking * plan.nodes
-            load_lanes(p, w, at_mu, energy, s)
-            if checking:
-                eliminate_inner_sites(s, V, zeeman_x, zeeman_z)
-            else:
-                _load_slopes(plan, w, energy, s)
-                eliminate_inner_sites_with_slopes(s, V, zeeman_x, zeeman_z)
-            end_green_functions(s, sigma, energy, re, im)
-            for l in range(min(LANES, total - piece)):
-                i, e = first + (piece + l) // each, energy[l]
-                growth = s[GROWTH * LANES + l]
-                if not growth <= data.growth[i]:  # so that NaN spreads
-                    data.growth[i] = growth
-                lane_conductances(re, im, sigma[e], l, data.bare[i, e])
-                if checking:
-                    at = data.green[i, e - plan.nodes]
-                    _chiral_green_function(re, im, l, plan.hop[w], at)
-                else:
-                    isolated_end_green_function(
-                        s, l, plan.hop[w], data.isolated[i, e], data.slope[i, e]
-                    )
+    total = mu.size * plan.nodes
+    for piece in range(0, total, LANES):
+        for l in range(LANES):
+            pair = min(piece + l, total - 1)
+            at_mu[l], energy[l] = mu[pair // plan.nodes], pair % plan.nodes
+        load_lanes(p, w, at_mu, energy, s)
+        _load_slopes(plan, w, energy, s)
+        eliminate_inner_sites_with_slopes(s, V, zeeman_x, zeeman_z)
+        end_green_functions(s, sigma, energy, re, im)
+        for l in range(min(LANES, total - piece)):
+            i, e = first + (piece + l) // plan.nodes, energy[l]
+            _take_growth(s, l, data.growth[i : i + 1])
+            lane_conductances(re, im, sigma[e], l, data.bare[i, e])
+            isolated_end_green_function(s, l, plan.hop[w], data.isolated[i, e], data.slope[i, e])
+
+
+@nb.njit(cache=True)
+def _take_growth(s: FloatArray, lane: int, growth: FloatArray) -> None:  # pragma: no cover
+    """Replace a set's growth by that of one of its lanes if it is larger."""
+    grown = s[GROWTH * LANES + lane]
+    if not grown <= growth[0]:  # so that NaN spreads
+        growth[0] = grown
+
+
+@nb.njit(cache=True)
+def _load_check(
+    p: Problem,
+    plan: EnergyPlan,
+    at: tuple[int, int, int],
+    check: int,
+    sought: FloatArray,
+    lane: int,
+    s: FloatArray,
+    sigma: ComplexArray,
+) -> None:  # pragma: no cover
+    """Write one lane's terms and its leads' Σ, shape (1, 2, 2, 2, 2), at a check of set `at`."""
+    w, f, mu = at
+    s[KINETIC * LANES + lane] = p.kinetic[w, mu]
+    if check < CHECKS:
+        e = plan.nodes + check
+        s[NORMAL * LANES + lane], s[ANOMALOUS * LANES + lane] = p.normal[w, e], p.anomalous[w, e]
+        sigma[0] = p.sigma[w, f, e]
+        return
+    k, hop = check - CHECKS, plan.hop[w]
+    gamma, delta0 = plan.parent[w]
+    root = np.sqrt(delta0**2 - sought[k] ** 2)
+    s[NORMAL * LANES + lane] = sought[k] * (1 + gamma / root) / hop
+    s[ANOMALOUS * LANES + lane] = gamma * delta0 / root / hop
+    hopping, spin_orbit, zeeman, lead_mu = plan.leads[w]
+    omega = sought[k : k + 1]
+    fill_self_energies(omega, hopping, spin_orbit, zeeman * plan.B[f], lead_mu, sigma)
+    rotate_spin(sigma, plan.turn[w])
+    sigma /= hop
+
+
+@nb.njit(cache=True)
+def _solve_checks(
+    p: Problem, plan: EnergyPlan, sets: NDArray[np.int64], first: int, data: _Solved
+) -> None:  # pragma: no cover
+    """Add the solver's data at the checks, once the sets' own are known."""
+    w, f = sets[0, 0], sets[0, 1]
+    s, re, im = np.empty(STATE * LANES), np.empty(64 * LANES), np.empty(64 * LANES)
+    energy, sigma = np.arange(LANES), np.empty((LANES, 2, 2, 2, 2), dtype=np.complex128)
+    total = sets.shape[0] * COMPARED
+    for piece in range(0, total, LANES):
+        for l in range(LANES):
+            pair = min(piece + l, total - 1)
+            i = pair // COMPARED
+            at = w, f, sets[i, 2]
+            sought = data.sought[first + i]
+            _load_check(p, plan, at, pair % COMPARED, sought, l, s, sigma[l : l + 1])
+        eliminate_inner_sites(s, p.V[w], p.zeeman_x[w, f], p.zeeman_z[w, f])
+        end_green_functions(s, sigma, energy, re, im)
+        for l in range(min(LANES, total - piece)):
+            i, e = first + (piece + l) // COMPARED, (piece + l) % COMPARED
+            _take_growth(s, l, data.growth[i : i + 1])
+            lane_conductances(re, im, sigma[l], l, data.bare[i, plan.nodes + e])
+            _chiral_green_function(re, im, l, plan.hop[w], data.green[i, e])
 
 
 @nb.njit(cache=True)
@@ -184,6 +248,7 @@ def _average_sets(
                 leads,
                 data.green[at],
                 data.bare[at],
+                data.sought[at],
                 out[w, f, mu],
             )
         error[w, f, mu] = estimate
@@ -214,8 +279,9 @@ def _calculate(
     data = _Solved(
         np.empty((W, m, 8, 8)),
         np.empty((W, m, 8, 8)),
-        np.empty((W, CHECKS, 8, 8), dtype=np.complex128),
-        np.empty((W, m + CHECKS, 2, 4)),
+        np.empty((W, COMPARED, 8, 8), dtype=np.complex128),
+        np.empty((W, m + COMPARED, 2, 4)),
+        np.empty((W, SOUGHT)),
         np.empty(W),
     )
     first = 0
@@ -232,6 +298,10 @@ def _calculate(
     while first < count:
         last = _end_of_group(sets, first)
         some = sets[first:last]
+        for i in range(first, last):
+            hop = plan.hop[sets[i, 0]]
+            dense_energies(some_E[i], some_weight[i], hop, plan.window, data.sought[i])
+        _solve_checks(p, plan, some, first, data)
         _average_sets(p, plan, growth_limit, some, data, first, some_E, some_weight, out, error)
         first = last
 
@@ -283,11 +353,11 @@ def thermal_conductance(
     sets = _where(np.ones(shape, dtype=bool))
     earlier: list[FloatArray] = []
     for nodes in NODES:
-        plan = energy_plan(wires, bias, kT, nodes)
+        plan = energy_plan(wires, B, bias, kT, nodes)
         found, estimate = np.full_like(G, np.nan), np.full(shape, np.inf)
         _kernel(prepare(wires, mu, B, plan.omega), plan, growth_limit, sets, found, estimate)
         found[~np.isfinite(estimate)] = np.nan
-        energies[tuple(sets.T)] += plan.omega.size
+        energies[tuple(sets.T)] += nodes + COMPARED
         for other in earlier:  # NaN agrees with nothing
             apart = AGREEMENT * abs(found - other).max(axis=(-1, -2))
             estimate = np.where(apart < estimate, np.sqrt(apart * estimate), estimate)

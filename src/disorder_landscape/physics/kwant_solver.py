@@ -84,7 +84,7 @@ def conductances(smatrix: Any) -> FloatArray:
     G = np.empty((2, 4))
     for sign, (same, other) in enumerate([(ELECTRON, HOLE), (HOLE, ELECTRON)]):
         for lead in (0, 1):
-            modes = smatrix.num_propagating(lead) // 2
+            modes = smatrix.lead_info[lead].block_nmodes[same]
             normal = smatrix.transmission((lead, same), (lead, same))
             G[sign, lead] = modes - normal + smatrix.transmission((lead, other), (lead, same))
         for position, (out, into) in enumerate([(0, 1), (1, 0)], start=2):

@@ -58,7 +58,8 @@ class ThermalConductance(NamedTuple):
     conductance: FloatArray
     """Shape (wire, mu, B, bias, 4): G_LL, G_RR, G_LR, G_RL in e²/h."""
     error: FloatArray
-    """Estimated error of the largest of them, shape (wire, mu, B), in e²/h."""
+    """Estimated error of the largest of them, shape (wire, mu, B), in e²/h; infinite where one is
+    no number."""
     energies: NDArray[np.int64]
     """Energies solved, shape (wire, mu, B)."""
 
@@ -104,7 +105,8 @@ def thermal_quadrature(
         bare = _BareConductance(wires[w], mu[m : m + 1], B[f : f + 1], theta)
         low, high = _first_panels(wires[w], bias, kT, panel, reach)
         G[index], rules, missed = _integral(bare, low, high, bias, kT, tolerance)
-        error[index] = rules + missed + LARGEST_G * np.exp(-reach)
+        finite = np.isfinite(G[index]).all()
+        error[index] = rules + missed + LARGEST_G * np.exp(-reach) if finite else np.inf
         energies[index] = bare.energies
     return ThermalConductance(G, error, energies)
 

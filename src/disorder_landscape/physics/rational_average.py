@@ -17,7 +17,7 @@ from disorder_landscape.physics.dressing import (
     of_ends,
     solve_lower,
 )
-from disorder_landscape.physics.energy_plan import CHECKS, EnergyPlan
+from disorder_landscape.physics.energy_plan import CHECKS, COMPARED, SOUGHT, EnergyPlan
 from disorder_landscape.physics.hamiltonian import ComplexArray
 from disorder_landscape.physics.inverse_iteration import Batch, factor_at_energies, new_batch
 from disorder_landscape.physics.parameters import FloatArray
@@ -43,6 +43,7 @@ def rational_average(
     leads: Leads,
     green: ComplexArray,
     bare: FloatArray,
+    sought: FloatArray,
     out: FloatArray,
 ) -> float:  # pragma: no cover
     """Write the thermal conductances of one set, shape (bias, 4); return the error estimate.
@@ -57,10 +58,12 @@ def rational_average(
     isolated : array, shape (8, 8)
         G of the isolated wire at the second of the picked nodes, chiral basis, 1/meV.
     leads : Leads
-    green : array, shape (CHECKS, 8, 8)
+    green : array, shape (COMPARED, 8, 8)
         G with the leads attached at the checks, chiral basis, 1/meV.
-    bare : array, shape (node + CHECKS, 2, 4)
+    bare : array, shape (node + COMPARED, 2, 4)
         Conductances at ±ω.
+    sought : array, shape (SOUGHT,)
+        The set's own checks, which follow those of the plan, in meV.
     out : array, shape (bias, 4)
     """
     m = plan.nodes
@@ -71,15 +74,21 @@ def rational_average(
     if order.size == 0 and both > 0:
         return np.inf
     terms = conductance_terms(poles, order, paired, levels, leads, b)
-    smooth = np.empty((4, plan.signed.size))
-    sum_poles(plan.signed, terms, smooth)
+    checks = np.empty(COMPARED)
+    checks[:CHECKS], checks[CHECKS:] = plan.omega[m:], sought
+    end = 2 * (m + COMPARED)
+    signed = np.zeros((end + WIDTH - 1) // WIDTH * WIDTH)  # full vectors
+    signed[: 2 * m] = plan.signed[: 2 * m]
+    signed[2 * m : end - COMPARED], signed[end - COMPARED : end] = checks, -checks
+    smooth = np.empty((4, signed.size))
+    sum_poles(signed, terms, smooth)
     for c in range(4):
         for sign in range(2):
             for k in range(m):
                 at = sign * m + k
                 smooth[c, at] = bare[k, sign, c] - smooth[c, at]
-            for k in range(CHECKS):
-                at = 2 * m + sign * CHECKS + k
+            for k in range(COMPARED):
+                at = 2 * m + sign * COMPARED + k
                 smooth[c, at] = bare[m + k, sign, c] - smooth[c, at]
         for v in range(plan.bias.size):
             total = 0.0
@@ -87,44 +96,73 @@ def rational_average(
                 total += plan.weights[v, at] * smooth[c, at]
             out[v, c] = total
     average_poles(terms, plan.bias, plan.kT, out)
-    counts = _shares_that_count(plan, terms)
-    of_model = SAFETY * hop * _mismatch(plan, levels, leads, green, counts, b)
-    rough = ROUGHNESS * _roughness(plan, smooth, counts)
+    counts = _shares_that_count(checks, plan.kT, terms)
+    of_model = SAFETY * hop * _mismatch(checks, levels, leads, green, counts, b)
+    counts[CHECKS:] = np.sqrt(counts[CHECKS:])
+    rough = ROUGHNESS * _roughness(_at_checks(plan, sought), smooth, counts)
     return float(of_model if of_model > rough else rough)
 
 
 @nb.njit(cache=True, error_model="numpy")
-def _shares_that_count(plan: EnergyPlan, terms: Terms) -> FloatArray:  # pragma: no cover
+def _shares_that_count(
+    checks: FloatArray, kT: float, terms: Terms
+) -> FloatArray:  # pragma: no cover
     """Return what part of a difference at each check the average can have.
 
     A pole misplaced by δ shows as v²δ/(ω − z)² and counts as v²δ/(kT)² in the average: so a
-    difference is scaled down where a pole is nearer than kT.
+    difference is scaled down where a pole is nearer than kT. (Where levels are dense, the whole
+    pattern of poles may be another, each with its v²/(ω − z) that counts as v²/kT: of the
+    conductance there the square root of this is taken.)
     """
-    shares = np.empty(CHECKS)
-    for k in range(CHECKS):
-        nearest = plan.kT**2
+    shares = np.empty(COMPARED)
+    for k in range(COMPARED):
+        nearest = kT**2
         for n in range(terms.zr.size):
-            apart = (plan.omega[plan.nodes + k] - terms.zr[n]) ** 2 + terms.zi[n] ** 2
+            apart = (checks[k] - terms.zr[n]) ** 2 + terms.zi[n] ** 2
             nearest = min(nearest, apart)
-        shares[k] = nearest / plan.kT**2
+        shares[k] = nearest / kT**2
     return shares
 
 
 @nb.njit(cache=True, error_model="numpy")
+def _at_checks(plan: EnergyPlan, sought: FloatArray) -> FloatArray:  # pragma: no cover
+    """Return the weights of the smooth part's values at the nodes for those at ±checks.
+
+    At the set's own by the barycentric formula, in which Chebyshev's node u has ±√(1 − u²).
+    """
+    both = 2 * plan.nodes
+    weights = np.empty((2 * COMPARED, both))
+    for sign in range(2):
+        at, of_all = sign * COMPARED, sign * CHECKS
+        weights[at : at + CHECKS] = plan.at_checks[of_all : of_all + CHECKS]
+        for k in range(SOUGHT):
+            row, total = weights[at + CHECKS + k], 0.0
+            omega = sought[k] if sign == 0 else -sought[k]
+            for n in range(both):
+                u = plan.signed[n] / plan.window
+                row[n] = np.sqrt(1 - u * u) / (omega / plan.window - u)
+                if (n % plan.nodes + n // plan.nodes) % 2 == 1:
+                    row[n] = -row[n]
+                total += row[n]
+            row /= total
+    return weights
+
+
+@nb.njit(cache=True, error_model="numpy")
 def _roughness(
-    plan: EnergyPlan, smooth: FloatArray, shares: FloatArray
+    weights: FloatArray, smooth: FloatArray, shares: FloatArray
 ) -> float:  # pragma: no cover
     """Return how far the smooth part's polynomial is off at the checks, in e²/h.
 
     A pole that was lost, or counted twice, leaves its peak in what should be smooth.
     """
-    m, worst = plan.nodes, 0.0
-    for k in range(2 * CHECKS):
+    both, worst = weights.shape[1], 0.0
+    for k in range(2 * COMPARED):
         for c in range(4):
-            value = -smooth[c, 2 * m + k]
-            for n in range(2 * m):
-                value += plan.at_checks[k, n] * smooth[c, n]
-            value = abs(value) * shares[k % CHECKS]
+            value = -smooth[c, both + k]
+            for n in range(both):
+                value += weights[k, n] * smooth[c, n]
+            value = abs(value) * shares[k % COMPARED]
             if not value <= worst:  # so that NaN counts
                 worst = value
     return worst
@@ -132,7 +170,7 @@ def _roughness(
 
 @nb.njit(cache=True, error_model="numpy")
 def _mismatch(
-    plan: EnergyPlan,
+    checks: FloatArray,
     levels: Levels,
     leads: Leads,
     green: ComplexArray,
@@ -142,7 +180,7 @@ def _mismatch(
     """Return the largest difference of the model's G and the solver's at the checks, in 1/meV."""
     W = WIDTH
     for l in range(W):
-        b.zr[l], b.zi[l] = plan.omega[plan.nodes + min(l, CHECKS - 1)], 0.0
+        b.zr[l], b.zi[l] = checks[min(l, COMPARED - 1)], 0.0
     factor_at_energies(levels, leads.inverse, b)
     unit, f = np.zeros((2, 8 * W)), np.empty((8, 2, 8 * W))
     for j in range(8):
@@ -163,7 +201,7 @@ def _mismatch(
             re, im = add_product(b.pivots, f[i], f[j], re, im)
             write(here[0], 0, re)
             write(here[1], 0, im)
-            for k in range(CHECKS):
+            for k in range(COMPARED):  # no more than a vector
                 off = abs(complex(here[0, k], here[1, k]) - green[k, i, j]) * shares[k]
                 if not off <= worst:  # so that NaN counts
                     worst = off

@@ -44,6 +44,15 @@ SMOOTH, CHECKS = 8, 8
 """Real energies for the smooth part, and for its check: together one vector of the recursion."""
 TOLERANCE = 2e-5
 """Estimated error in e²/h above which nodes are added."""
+FAR = 4.0
+"""Poles further from zero than so many windows are left to the smooth part: through 16 nodes what
+they give is interpolated to 1e-14 of itself. Nor are they all poles of the wire: there the leads'
+self-energies, taken as linear, may feed it, and residues of 1e15 would cancel in the sum."""
+TWOFOLD = 1e-7
+"""Up to this V_Z/kT the field is taken as along the wire: it does not count, and every level is
+twofold, which the sum over poles does not stand."""
+FEEDS = 1e-9
+"""A nearer pole further above the real axis, in units of the window, makes no model."""
 
 LEFT_ELECTRON, LEFT_HOLE, RIGHT_ELECTRON, RIGHT_HOLE = (slice(2 * i, 2 * i + 2) for i in range(4))
 PROBABILITIES = [
@@ -84,7 +93,8 @@ def thermal_conductance(
     energies = np.zeros(shape, dtype=np.int64)
     for w, f in np.ndindex(shape[0], shape[2]):
         field, one = B[f : f + 1], [wires[w]]
-        if field[0] == 0:  # any angle is the same, and every level twofold
+        zeeman = max(wires[w].zeeman_per_tesla, wires[w].lead_zeeman_per_tesla) * abs(B[f])
+        if zeeman <= TWOFOLD * BOLTZMANN * temperature:
             straight = finite_temperature.thermal_conductance(one, mu, field, bias, temperature)
             G[w, :, f], error[w, :, f], energies[w, :, f] = (part[0, :, 0] for part in straight)
             continue
@@ -129,13 +139,27 @@ class _Average:
         wires, theta = [self.wire], self.theta
         F = tilted_field.isolated_green_functions(wires, mu, self.B, z, theta)[0, 0]
         bare = tilted_field.bare_conductance(wires, mu, self.B, self.real, theta)[0, :, 0]
-        some = [self._of_wire(*isolated_wire(z, F[m]), bare[m]) for m in range(mu.size)]
+        some = [self._of_set(z, F[m], bare[m]) for m in range(mu.size)]
         G, error = (np.array(part) for part in zip(*some, strict=True))
         return G, np.where(np.isfinite(G).all(axis=(1, 2)), error, np.inf)
+
+    def _of_set(
+        self, z: ComplexArray, F: ComplexArray, bare: FloatArray
+    ) -> tuple[FloatArray, float]:
+        """Return G(V), shape (bias, 4), and its estimated error; infinite where there is no model.
+
+        So it is where poles of few sites without a parent coincide and share their eigenvector.
+        """
+        try:
+            return self._of_wire(*isolated_wire(z, F), bare)
+        except np.linalg.LinAlgError:
+            return np.full((self.bias.size, 4), np.nan), np.inf
 
     def _of_wire(self, A: FloatArray, u: FloatArray, bare: FloatArray) -> tuple[FloatArray, float]:
         """Return G(V), shape (bias, 4), and its estimated error; bare: (real, 2, 4)."""
         z, residues = self._poles(A, u)
+        if np.isnan(z).any():
+            return np.full((self.bias.size, 4), np.nan), np.inf
         signed = np.concatenate([self.real[:SMOOTH], -self.real[:SMOOTH]])
         checks = np.concatenate([self.real[SMOOTH:], -self.real[SMOOTH:]])
         rest = [
@@ -148,18 +172,25 @@ class _Average:
         return 2 * (shares @ residues).real + self.smooth @ rest[0], float(error)
 
     def _poles(self, A: FloatArray, u: FloatArray) -> tuple[ComplexArray, ComplexArray]:
-        """Return the poles of the wire with its leads and their residues, shape (pole, 4)."""
+        """Return the near poles of the wire with its leads and their residues, shape (pole, 4).
+
+        NaN if the data make no model.
+        """
         sigma, slope = (BASIS.conj().T @ s @ BASIS for s in (self.sigma, self.slope))
         N = np.eye(len(A)) - u.T @ slope.real @ u
         K = A + u.T @ sigma.imag @ u
         eigenvalues, V = np.linalg.eig(np.linalg.solve(N, K))
         # A level that the leads do not reach has no width but what rounding gives, or none at all.
         width = np.finfo(np.float64).eps * abs(eigenvalues).max()
-        z = -eigenvalues.imag + 1j * np.minimum(eigenvalues.real, -width)
+        near, decay = abs(eigenvalues) < FAR * self.window, eigenvalues.real
+        if (decay[near] > FEEDS * self.window).any():
+            return np.full(1, np.nan + 0j), np.zeros((1, 4), dtype=np.complex128)
+        z = -eigenvalues.imag + 1j * np.where(near, np.minimum(decay, -width), decay)
         a = (BASIS @ (u @ V)).T  # (pole, 8)
         b = np.linalg.solve(V, np.linalg.solve(N, u.T)) @ BASIS.conj().T
         products = (a[:, :, None] * b[:, None, :]).reshape(-1, 64)
-        G = (1 / (z.conj()[:, None] - z) @ products).reshape(-1, 8, 8).conj()  # G(z*)*
+        z, every, a, b = z[near], z, a[near], b[near]
+        G = (1 / (z.conj()[:, None] - every) @ products).reshape(-1, 8, 8).conj()  # G(z*)*
         gamma = [1j * (s - s.conj().T) for s in (self.sigma, self.slope)]
         at_poles = gamma[0] + z[:, None, None] * gamma[1]
         left = np.einsum("nij,nj->ni", at_poles, a)

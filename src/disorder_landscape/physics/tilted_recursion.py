@@ -11,10 +11,10 @@ from __future__ import annotations
 import numba as nb
 import numpy as np
 
+from disorder_landscape.physics.complex_recursion import WIDTH as WIDTH
+from disorder_landscape.physics.complex_recursion import look_at_coupling
 from disorder_landscape.physics.parameters import FloatArray
-
-WIDTH = 16
-"""(μ, ω) pairs that one call advances together."""
+from disorder_landscape.physics.recursion import LOOK_EVERY
 
 
 @nb.njit(cache=True, fastmath={"contract", "nsz", "arcp"}, error_model="numpy")
@@ -109,10 +109,11 @@ def eliminate_inner_sites_tilted(
         On return the 8×8 matrix, left end first; entry (a, b) of lane l has its real part at
         [(16a + 2b)·WIDTH + l] and its imaginary part WIDTH further on.
     growth : array, shape (WIDTH,)
-        On return the largest |p|² met.
+        On return the largest |p|², or product of the largest |C|² at one look and at the next.
     """
     s[:] = 0.0
     growth[:] = 0.0
+    coupling = np.ones(WIDTH)
     for site in range(V.size):
         for i in range(4):
             k, sign = (i if site == 0 else i + 4), (1.0 if i < 2 else -1.0)
@@ -122,3 +123,5 @@ def eliminate_inner_sites_tilted(
             elif site > 1:
                 _eliminate_row(s, k, sign, growth)
             _add_onsite_row(s, k, sign, V[site], field[site], terms)
+        if site > 1 and (site % LOOK_EVERY == 0 or site == V.size - 1):
+            look_at_coupling(s, coupling, growth)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
@@ -116,6 +117,10 @@ def conductance(
             G0 = bare(wires[some], grids["mu"][points], grids["B"][fields], omega)
             G[some, points, fields] = np.einsum("wmbkse,vks->wmbve", G0, weights)
             told(G0[..., 0, 0, 0].size, error.size)
+    missing = np.isnan(G).any(axis=(3, 4)).sum()
+    if missing:
+        message = f"At {missing} of {error.size} points (wire, μ, B) a conductance is no number"
+        warnings.warn(f"{message}: there the solver failed.", RuntimeWarning, stacklevel=2)
     data: dict[str, Any]
     data = {name: (("realization", *grids), G[..., i]) for i, name in enumerate(CONDUCTANCES)}
     if exact:
