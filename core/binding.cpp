@@ -13,6 +13,7 @@
 
 #include "conductance.hpp"
 #include "processor.hpp"
+#include "thermal/conductance.hpp"
 
 namespace nb = nanobind;
 
@@ -107,16 +108,28 @@ Array determinant_at_zero(Matrix V, Matrix parameters, Vector mu, Vector B, Vect
                    });
 }
 
+nb::tuple thermal(Matrix V, Matrix parameters, Vector mu, Vector B, Vector bias, double kT, double tolerance, double growth_limit) {
+    std::vector<size_t> sets{V.shape(0), mu.size(), B.size()};
+    Array error = new_array(sets), energies = new_array(sets);
+    Array G = on_grid(V, parameters, mu, B, bias, {V.shape(0), mu.size(), B.size(), bias.size(), 4},
+                      [&](const Grid& grid, double* out, Stop& stop) {
+                          thermal_conductance(grid, kT, tolerance, growth_limit, out, error.data(), energies.data(), stop);
+                      });
+    return nb::make_tuple(G, error, energies);
+}
+
 }  // namespace
 
 NB_MODULE(CORE_MODULE, m) {
     m.def("instruction_set", [] { return CORE_TEXT(CORE_VARIANT); });
     m.def("supported_variants", &core::supported_variants);
-    m.def("set_threads", [](int count) { core::thread_count() = std::max(1, count); }, nb::arg("count"));
+    m.def("set_threads", [](int count) { return core::thread_count().exchange(std::max(1, count)); }, nb::arg("count"));
     m.def("real_conductance", &conductance<core::RealArithmetic>, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"),
           nb::arg("B"), nb::arg("omega"), nb::arg("growth_limit"));
     m.def("complex_conductance", &conductance<core::ComplexArithmetic>, nb::arg("V"), nb::arg("parameters"),
           nb::arg("mu"), nb::arg("B"), nb::arg("omega"), nb::arg("growth_limit"));
+    m.def("thermal_conductance", &thermal, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"), nb::arg("B"),
+          nb::arg("bias"), nb::arg("kT"), nb::arg("tolerance"), nb::arg("growth_limit"));
     m.def("reflection_determinant", &determinant_at_zero, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"),
           nb::arg("B"), nb::arg("omega"), nb::arg("growth_limit"));
 }

@@ -84,8 +84,8 @@ inline void set_ends(Ends<R>& G, int lane, const EndMatrix& one) {
 template <class A, class Use>
 inline void solve_pairs(const Grid& grid, const FieldOf<A>& field, int first, double growth_limit, Use use) {
     int pairs = grid.mu_count * grid.omega_count;
-    Terms<typename A::N> terms;
-    LaneLeads<typename A::R> leads;
+    Terms<typename A::N> terms{};
+    LaneLeads<typename A::R> leads{};
     auto kinetic = [&](int pair) { return field.kinetic_zero - grid.mu[pair / grid.omega_count] / field.hop; };
     for (int l = 0; l < A::LANES; ++l) {
         int pair = std::min(first + l, pairs - 1), e = pair % grid.omega_count;

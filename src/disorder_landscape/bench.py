@@ -78,7 +78,7 @@ def measure(repeats: int, told: Progress = lambda done: None) -> dict[str, Any]:
         **{f"per energy, {n} sites": stopwatches.bare(some[0], *grid) for n, some in long.items()},
         **{f"per set, {n} sites": stopwatches.sets(some, *few) for n, some in long.items()},
     }
-    with threadpool_limits(1), stopwatches.numba_threads(1):
+    with threadpool_limits(1), stopwatches.threads_at_work(1):
         averaged = {
             name: exact_average(wires[name], *grids[name], BIASES, TEMPERATURE)[1:]
             for name in DATASETS

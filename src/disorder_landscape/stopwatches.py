@@ -16,10 +16,11 @@ import numpy as np
 
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset import shards
-from disorder_landscape.physics import fast_solver, kwant_solver
+from disorder_landscape.physics import kwant_solver
 from disorder_landscape.physics.gradient import conductance_gradient
 from disorder_landscape.physics.parameters import BIAS, TEMPERATURE, FloatArray, Nanowire
 from disorder_landscape.physics.transport import conductance, exact_average
+from disorder_landscape.solver import compiled
 
 ENERGIES = np.linspace(0.001, 0.08, 16)
 """In meV, for the times per energy."""
@@ -49,7 +50,7 @@ def kwant(wire: Nanowire, mu: FloatArray, B: FloatArray) -> Stopwatch:
 def bare(wire: Nanowire, mu: FloatArray, B: FloatArray, omega: FloatArray = ENERGIES) -> Stopwatch:
     """Time the bare conductance, per energy."""
     count = mu.size * B.size * omega.size
-    return lambda: _seconds(lambda: fast_solver.bare_conductance([wire], mu, B, omega)) / count
+    return lambda: _seconds(lambda: compiled.real_conductance([wire], mu, B, omega)) / count
 
 
 def gradient(wire: Nanowire, mu: FloatArray, B: FloatArray) -> Stopwatch:
@@ -71,7 +72,7 @@ def sets(wires: list[Nanowire], mu: FloatArray, B: FloatArray, threads: int = 1)
     """Time the exact thermal average, per (wire, μ, B), on so many threads."""
 
     def average() -> None:
-        with numba_threads(threads):
+        with threads_at_work(threads):
             exact_average(wires, mu, B, BIASES, TEMPERATURE)
 
     return lambda: _seconds(average) / (len(wires) * mu.size * B.size)
@@ -84,14 +85,15 @@ def _seconds(action: Callable[[], object]) -> float:
 
 
 @contextmanager
-def numba_threads(threads: int) -> Iterator[None]:
+def threads_at_work(threads: int) -> Iterator[None]:
     """Use so many threads, then as many as before."""
-    before = nb.get_num_threads()
+    before, core_before = nb.get_num_threads(), compiled.core.set_threads(threads)
     nb.set_num_threads(threads)
     try:
         yield
     finally:
         nb.set_num_threads(before)
+        compiled.core.set_threads(core_before)
 
 
 def peak_memory(config: DatasetConfig) -> float:

@@ -14,8 +14,6 @@ from scipy.optimize import brentq
 
 from disorder_landscape import ArgumentError, Nanowire, conductance, topological_visibility
 from disorder_landscape.physics import (
-    above_gap,
-    fast_solver,
     hamiltonian,
     kwant_solver,
     tilted_average,
@@ -26,6 +24,7 @@ from disorder_landscape.physics.quadrature import thermal_quadrature
 from disorder_landscape.physics.tilted_leads import tilted_lead_self_energies
 from disorder_landscape.physics.tilted_levels import BASIS, isolated_wire
 from disorder_landscape.physics.transport import exact_average
+from disorder_landscape.solver import compiled
 from random_wires import energies, fields, mus, random_wire, seeds
 
 BIAS = np.array([-0.04, -0.02, 0.0, 0.02, 0.04])
@@ -135,8 +134,9 @@ def test_the_scattering_matrix_is_unitary(seed, mu, B, omega, theta):
 @given(seeds, mus, fields, st.one_of(energies, st.floats(0.13, 0.5)))
 def test_at_no_angle_it_is_the_real_recursion(seed, mu, B, omega):
     wire = random_wire(seed)
-    solver = fast_solver if omega < wire.delta0 else above_gap
-    straight = solver.bare_conductance([wire], np.array([mu]), np.array([B]), np.array([omega]))
+    below = omega < wire.delta0
+    solve = compiled.real_conductance if below else compiled.complex_conductance
+    straight = solve([wire], np.array([mu]), np.array([B]), np.array([omega]))
     assert_allclose(bare(wire, mu, B, omega, 0.0), straight[0, 0, 0], atol=1e-8)
     assert_allclose(bare(wire, mu, B, omega, np.pi), straight[0, 0, 0], atol=1e-8)
 

@@ -90,7 +90,7 @@ def _grid() -> tuple[FloatArray, FloatArray]:
 
 def _in_turn(*watches: stopwatches.Stopwatch) -> list[tuple[float, ...]]:
     """Return the times of each turn, in which all are measured one after the other."""
-    with threadpool_limits(1), stopwatches.numba_threads(1):
+    with threadpool_limits(1), stopwatches.threads_at_work(1):
         return [tuple(watch() for watch in watches) for _ in range(TURNS + 1)][1:]
 
 
@@ -99,7 +99,7 @@ def _core_seconds(threads: int) -> stopwatches.Stopwatch:
     wires, (mu, B) = _wires(), _grid()
 
     def watch() -> float:
-        with stopwatches.numba_threads(min(threads, nb.config.NUMBA_NUM_THREADS)):
+        with stopwatches.threads_at_work(min(threads, nb.config.NUMBA_NUM_THREADS)):
             started = time.process_time()
             exact_average(wires, mu, B, stopwatches.BIASES, TEMPERATURE)
             return (time.process_time() - started) / (len(wires) * mu.size * B.size)

@@ -23,8 +23,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from disorder_landscape.arguments import require
-from disorder_landscape.physics import above_gap, fast_solver, tilted_field
+from disorder_landscape.physics import tilted_field
 from disorder_landscape.physics.parameters import BOLTZMANN, FloatArray, Nanowire
+from disorder_landscape.solver import compiled
 
 TOLERANCE = 5e-8
 """Error in e²/h that is spread over the window in proportion to energy."""
@@ -126,10 +127,12 @@ class _BareConductance:
             return np.asarray(tilted_field.bare_conductance(*arguments)[0, 0, 0])
         G0 = np.empty((omega.size, 2, 4))
         below = (omega < self.wire.delta0) & (self.wire.dissipation == 0)
-        for solver, some in ((fast_solver, below), (above_gap, ~below)):
+        for solve, some in (
+            (compiled.real_conductance, below),
+            (compiled.complex_conductance, ~below),
+        ):
             if some.any():
-                found = solver.bare_conductance([self.wire], self.mu, self.B, omega[some])
-                G0[some] = found[0, 0, 0]
+                G0[some] = solve([self.wire], self.mu, self.B, omega[some])[0, 0, 0]
         return G0
 
 

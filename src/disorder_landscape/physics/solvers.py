@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
-from typing import Any
 
 from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.physics.parameters import FloatArray, Nanowire
+from disorder_landscape.solver import compiled
 
 BareConductance = Callable[[Sequence[Nanowire], FloatArray, FloatArray, FloatArray], FloatArray]
 Determinant = Callable[[Sequence[Nanowire], FloatArray, FloatArray], FloatArray]
@@ -18,8 +18,8 @@ def solver_functions(
 ) -> tuple[BareConductance, Determinant]:
     """Return `bare_conductance` and `reflection_determinant` of "fast" or "kwant" at the angle θ.
 
-    The determinant is that of wires without dissipation. Each is imported only when it is asked
-    for: Kwant's import takes a second, Numba's two.
+    The determinant is that of wires without dissipation. Kwant and what needs Numba are imported
+    only when they are asked for: it takes a second or two.
     """
     if name == "fast" and theta != 0:
         from disorder_landscape.physics import tilted_field
@@ -29,10 +29,8 @@ def solver_functions(
             partial(tilted_field.reflection_determinant, theta=theta),
         )
     if name == "fast":
-        from disorder_landscape.physics import above_gap, fast_solver
-
-        bare: Any = above_gap if dissipative else fast_solver
-        return bare.bare_conductance, fast_solver.reflection_determinant
+        bare = compiled.complex_conductance if dissipative else compiled.real_conductance
+        return bare, compiled.reflection_determinant
     if name == "kwant":
         from disorder_landscape.physics import kwant_solver
 

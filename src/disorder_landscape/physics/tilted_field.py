@@ -2,7 +2,7 @@
 
 The σy term makes M complex: its transpose is M at −θ, so neither M nor the leads' self-energies are
 symmetric, and probabilities from one end to the other and back differ. Particle–hole symmetry holds
-at any θ. Same signatures as `above_gap` and `fast_solver`, with θ in radians.
+at any θ. θ is in radians.
 """
 
 from __future__ import annotations
@@ -14,13 +14,14 @@ import numba as nb
 import numpy as np
 from scipy.linalg import solve_banded
 
-from disorder_landscape.physics.above_gap import GROWTH_LIMIT, retarded_pairing_factors
+from disorder_landscape.physics.above_gap import retarded_pairing_factors
 from disorder_landscape.physics.compilation import compile_kernels
 from disorder_landscape.physics.fast_solver import Problem, prepare
 from disorder_landscape.physics.hamiltonian import ComplexArray, pairing_factors
 from disorder_landscape.physics.parameters import FloatArray, Nanowire
 from disorder_landscape.physics.tilted_leads import tilted_lead_self_energies
 from disorder_landscape.physics.tilted_recursion import WIDTH, eliminate_inner_sites_tilted
+from disorder_landscape.solver.compiled import GROWTH_LIMIT
 
 CHARGES = (slice(0, 2), slice(2, 4))
 """Electron and hole entries of one end."""
@@ -38,7 +39,7 @@ def bare_conductance(
 ) -> FloatArray:
     """Return the T = 0 conductances at ±ω, shape (wire, mu, B, omega, 2, 4), in e²/h.
 
-    As `above_gap.bare_conductance`, ω ≠ ±Δ₀, in a field at the angle θ.
+    As `compiled.complex_conductance`, ω ≠ ±Δ₀, in a field at the angle θ.
     """
     G, sigma = _end_green_functions(wires, mu, B, omega, theta, growth_limit)
     gamma = 1j * (sigma - sigma.conj().swapaxes(-1, -2))  # (wire, B, 1, omega, lead, charge, 2, 2)
@@ -61,7 +62,7 @@ def bare_conductance(
 def reflection_determinant(
     wires: Sequence[Nanowire], mu: FloatArray, B: FloatArray, theta: float
 ) -> FloatArray:
-    """Return det r at ω = 0 of both ends, shape (wire, lead, mu, B), as in `fast_solver`."""
+    """Return det r at ω = 0 of both ends, shape (wire, lead, mu, B), as in `compiled`."""
     G, sigma = _end_green_functions(wires, mu, B, np.zeros(1), theta, GROWTH_LIMIT)
     determinant = np.empty((len(wires), 2, mu.size, B.size))
     for lead in range(2):

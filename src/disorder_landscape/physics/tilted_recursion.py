@@ -1,7 +1,7 @@
 """The isolated wire reduced to its two end sites in a tilted field, many lanes at once.
 
-The counterpart of `complex_recursion` (same frame, units and order) for θ ≠ 0. The component of the
-field along the spin–orbit axis commutes with the rotation of the spin from site to site, so it
+The counterpart of `recursion` (same frame, units and order) for θ ≠ 0, row by row. The component of
+the field along the spin–orbit axis commutes with the rotation of the spin from site to site, so it
 stays what it is, V_Z sin θ σy. Below the gap M is Hermitian then and above it neither Hermitian nor
 symmetric: all 64 entries are kept, and one routine serves both sides.
 """
@@ -11,10 +11,27 @@ from __future__ import annotations
 import numba as nb
 import numpy as np
 
-from disorder_landscape.physics.complex_recursion import WIDTH as WIDTH
-from disorder_landscape.physics.complex_recursion import look_at_coupling
 from disorder_landscape.physics.parameters import FloatArray
 from disorder_landscape.physics.recursion import LOOK_EVERY
+
+WIDTH = 16
+"""(μ, ω) pairs that one call advances together."""
+
+
+@nb.njit(cache=True)
+def look_at_coupling(
+    s: FloatArray, last: FloatArray, growth: FloatArray
+) -> None:  # pragma: no cover
+    """Count the product of the largest |C|² at the last look and now among the lost digits."""
+    L = WIDTH
+    for l in range(L):
+        now = 0.0
+        for a in range(4):
+            for b in range(4, 8):
+                at = (16 * a + 2 * b) * L + l
+                now = max(now, s[at] ** 2 + s[at + L] ** 2)
+        growth[l] = max(growth[l], last[l] * now)
+        last[l] = now
 
 
 @nb.njit(cache=True, fastmath={"contract", "nsz", "arcp"}, error_model="numpy")
@@ -93,8 +110,9 @@ def eliminate_inner_sites_tilted(
 ) -> None:  # pragma: no cover
     """Reduce M of the isolated wire to its two end sites, for WIDTH lanes.
 
-    Row after row, as in `complex_recursion`: with u the column and v the row of the pivot k and p
-    the pivot's inverse,
+    Row after row is eliminated. A row couples to its partner on the next site alone, by ±1, so the
+    partner takes its place in the matrix: with u the column and v the row of the pivot k, p the
+    pivot's inverse and A the onsite block of the next site,
 
         s_ab ← s_ab − u_a p v_b,   s_ak ← A_ak ∓ u_a p,   s_kb ← A_kb ∓ p v_b,   s_kk ← A_kk − p.
 

@@ -4,7 +4,7 @@ from disorder_landscape.physics.parameters import FloatArray
 
 def instruction_set() -> str: ...
 def supported_variants() -> list[str]: ...
-def set_threads(count: int) -> None: ...
+def set_threads(count: int) -> int: ...
 def real_conductance(
     V: FloatArray,
     parameters: FloatArray,
@@ -21,6 +21,16 @@ def complex_conductance(
     omega: FloatArray,
     growth_limit: float,
 ) -> FloatArray: ...
+def thermal_conductance(
+    V: FloatArray,
+    parameters: FloatArray,
+    mu: FloatArray,
+    B: FloatArray,
+    bias: FloatArray,
+    kT: float,
+    tolerance: float,
+    growth_limit: float,
+) -> tuple[FloatArray, FloatArray, FloatArray]: ...
 def reflection_determinant(
     V: FloatArray,
     parameters: FloatArray,

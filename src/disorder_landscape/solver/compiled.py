@@ -21,6 +21,13 @@ if TYPE_CHECKING:
 
     from disorder_landscape.solver import _core_baseline as core
 
+__all__ = [
+    "complex_conductance",
+    "core",
+    "real_conductance",
+    "reflection_determinant",
+]
+
 CHOICE = "DISORDER_LANDSCAPE_CORE"
 VARIANTS = ("baseline", "avx2", "avx512")
 
@@ -80,8 +87,8 @@ GROWTH_LIMIT = 1e7
 pivoting is trusted: see core/wire/elimination.hpp."""
 
 
-def _handed_over(wires: Sequence[Nanowire]) -> tuple[FloatArray, FloatArray]:
-    """Return the wires' V with barriers, (wire, site), and parameters in the order of core's Wire."""
+def handed_over(wires: Sequence[Nanowire]) -> tuple[FloatArray, FloatArray]:
+    """Return V with barriers, (wire, site), and the parameters in the order of the core's Wire."""
     V = np.array([w.potential_with_barriers for w in wires])
     parameters = [
         (
@@ -114,7 +121,7 @@ def real_conductance(
     array, shape (wire, mu, B, omega, 2, 4)
         In e²/h; the last axes are the sign of ω (+, −) and G_LL, G_RR, G_LR, G_RL.
     """
-    G: FloatArray = core.real_conductance(*_handed_over(wires), mu, B, omega, growth_limit)
+    G: FloatArray = core.real_conductance(*handed_over(wires), mu, B, omega, growth_limit)
     return G
 
 
@@ -126,7 +133,7 @@ def complex_conductance(
     growth_limit: float = GROWTH_LIMIT,
 ) -> FloatArray:
     """Return the same at any real ω ≠ ±Δ₀ of each wire, with dissipation."""
-    G: FloatArray = core.complex_conductance(*_handed_over(wires), mu, B, omega, growth_limit)
+    G: FloatArray = core.complex_conductance(*handed_over(wires), mu, B, omega, growth_limit)
     return G
 
 
@@ -135,6 +142,6 @@ def reflection_determinant(
 ) -> FloatArray:
     """Return det r at ω = 0 of both ends, shape (wire, lead, mu, B)."""
     T: FloatArray = core.reflection_determinant(
-        *_handed_over(wires), mu, B, np.zeros(1), growth_limit
+        *handed_over(wires), mu, B, np.zeros(1), growth_limit
     )
     return T

@@ -1,0 +1,123 @@
+// One set's thermal average from its levels: poles, residues, closed form, and how sure it is.
+//
+// What is left of the conductance beside its poles is smooth; the polynomial through its values at the nodes
+// is averaged exactly.  Two comparisons with the solver at further energies give the error.
+#pragma once
+
+#include "dense.hpp"
+#include "trigamma.hpp"
+
+namespace core {
+
+constexpr double ROUGHNESS = 10.0;  // estimated error over the smooth part's largest mismatch at the checks
+constexpr double SAFETY = 300.0;    // estimated error over the model's largest mismatch, times t', at the checks
+
+// The solver's data of one set.
+struct SetData {
+    std::vector<NodeData> isolated;           // (node,)
+    Symmetric8<Complex<double>> green[COMPARED];  // leads attached, at the checks, chiral basis, 1/meV
+    std::vector<Conductances<double>> bare;   // (node + COMPARED,)
+    double sought[SOUGHT];                    // the set's own checks in meV
+    double growth;
+};
+
+namespace detail {
+
+inline double largest(double a, double b) { return !(b <= a) ? b : a; }  // so that NaN spreads
+
+// What part of a difference at a check the average can have: a pole misplaced by δ shows as v²δ/(ω − z)² and
+// counts as v²δ/(kT)² in the average, so a difference is scaled down where a pole is nearer than kT.
+inline double share_that_counts(double omega, double kT, const std::vector<Term>& terms) {
+    double nearest = kT * kT;
+    for (const Term& term : terms) nearest = std::min(nearest, std::norm(omega - term.z));
+    return nearest / (kT * kT);
+}
+
+// The largest difference of the model's G and the solver's at the checks, in 1/meV.
+inline double mismatch(const double (&checks)[COMPARED], const double (&shares)[COMPARED], const Leads& leads,
+                       const SetData& data, Batch& b) {
+    double worst = 0.0;
+    for (int first = 0; first < COMPARED; first += POLES) {
+        b.z = PoleComplex(0.0);
+        for (int l = 0; l < POLES; ++l) Batch::set(b.z, l, checks[std::min(first + l, COMPARED - 1)]);
+        b.factor_at_energies(leads.inverse);
+        Ends8 f[8], same_end[8];
+        for (int j = 0; j < 8; ++j) {
+            Ends8 unit;
+            unit.fill(PoleComplex(0.0));
+            unit[j] = PoleComplex(1.0);
+            b.S.multiply(unit, f[j]);
+            same_end[j] = f[j];
+            b.M.solve_lower(f[j]);
+        }
+        for (int i = 0; i < 8; ++i)
+            for (int j = i; j < 8; ++j) {
+                PoleComplex G = b.M.add_product(f[i], f[j], -same_end[j][i]);
+                for (int l = 0; l < POLES && first + l < COMPARED; ++l) {
+                    Complex<double> exact = data.green[first + l](i, j);
+                    Amplitude off(G.re[l] - exact.re, G.im[l] - exact.im);
+                    worst = largest(worst, std::abs(off) * shares[first + l]);
+                }
+            }
+    }
+    return worst;
+}
+
+}  // namespace detail
+
+// Write the thermal conductances of one set, shape (bias, 4); return the error estimate in e²/h.
+inline double rational_average(const EnergyPlan& plan, double hop, const LevelList& list, const SetData& data,
+                               const Leads& leads, double* out) {
+    int m = plan.nodes, pick = plan.picks[1];
+    Levels levels(list);
+    Batch batch(levels);
+    Starts starts = start_poles(plan.omega[pick], data.isolated[pick].G, plan.window, hop, list, leads);
+    Resonances found = find_poles(starts, leads, batch);
+    if (!found.whole) return INFINITY;
+    std::vector<Term> terms = conductance_terms(found, leads, batch);
+
+    double checks[COMPARED];
+    for (int k = 0; k < COMPARED; ++k) checks[k] = k < CHECKS ? plan.omega[m + k] : data.sought[k - CHECKS];
+    int each = m + COMPARED;  // nodes, then checks; then the same at −ω
+    std::vector<double> signed_energies(padded(2 * each), 0.0);
+    for (int k = 0; k < each; ++k) {
+        double omega = k < m ? plan.omega[k] : checks[k - m];
+        signed_energies[k] = omega, signed_energies[each + k] = -omega;
+    }
+    std::vector<std::array<double, 4>> smooth(signed_energies.size());
+    for (int first = 0; first < int(signed_energies.size()); first += COLUMNS) {
+        Columns of_poles[4];
+        sum_poles(terms, Columns::load(&signed_energies[first]), of_poles);
+        for (int l = 0; l < COLUMNS && first + l < 2 * each; ++l)
+            for (int c = 0; c < 4; ++c) {
+                int sign = (first + l) / each, k = (first + l) % each;
+                smooth[first + l][c] = data.bare[k].at[sign][c] - of_poles[c][l];
+            }
+    }
+    auto polynomial = [&](const std::vector<double>& weights, int c) {
+        double total = 0.0;
+        for (int n = 0; n < 2 * m; ++n) total += weights[n] * smooth[n / m * each + n % m][c];
+        return total;
+    };
+    for (int v = 0; v < plan.biases; ++v)
+        for (int c = 0; c < 4; ++c) out[4 * v + c] = polynomial(plan.weights[v], c);
+    average_poles(terms, plan.bias, plan.kT, out);
+
+    double shares[COMPARED], rough = 0.0;
+    for (int k = 0; k < COMPARED; ++k) shares[k] = detail::share_that_counts(checks[k], plan.kT, terms);
+    double of_model = SAFETY * hop * detail::mismatch(checks, shares, leads, data, batch);
+    // Where levels are dense, the whole pattern of poles may be another, each with its v²/(ω − z) that counts as
+    // v²/kT: of the conductance there the square root is taken.  A pole that was lost, or counted twice, leaves its
+    // peak in what should be smooth.
+    for (int k = 0; k < COMPARED; ++k)
+        for (int sign = 0; sign < 2; ++sign) {
+            std::vector<double> weights = k < CHECKS ? plan.at_checks[sign * CHECKS + k] : plan.weights_at(sign == 0 ? checks[k] : -checks[k]);
+            double share = k < CHECKS ? shares[k] : std::sqrt(shares[k]);
+            for (int c = 0; c < 4; ++c)
+                rough = detail::largest(rough, std::abs(polynomial(weights, c) - smooth[sign * each + m + k][c]) * share);
+        }
+    rough *= ROUGHNESS;
+    return of_model > rough ? of_model : rough;
+}
+
+}  // namespace core

@@ -1,0 +1,232 @@
+// The conductance at finite temperature, exactly: rational in energy, averaged in closed form.
+//
+// For one set (wire, B, μ): the end Green's function and its slope at M energies (wire/), the levels of the
+// isolated wire and the poles with the leads attached (poles/), their residues and closed-form averages
+// (average.hpp).  A few further energies check the model; where it is off by more than the tolerance, M grows.
+#pragma once
+
+#include "../conductance.hpp"
+#include "average.hpp"
+
+namespace core {
+
+constexpr int NODES[] = {12, 13, 16, 20, 28, 36};  // numbers of nodes that are tried in turn
+constexpr double TOLERANCE = 1e-4;                 // estimated error in e²/h above which nodes are added
+// Two models that differ by less than their estimates are as wrong as the geometric mean of both: the estimates
+// are cautious, but models may err together.
+constexpr double AGREEMENT = 2.0;
+constexpr double FLOOR = 5e-6;  // error in e²/h that no check sees: of the kernel's cut and of the smooth part's interpolation
+
+struct SetIndex {
+    int wire, field, mu;
+    bool same_field(const SetIndex& other) const { return wire == other.wire && field == other.field; }
+};
+
+namespace detail {
+
+constexpr int SLOPE_LANES = REGISTER;
+using SlopeReal = Lanes<SLOPE_LANES>;
+using CheckReal = Lanes<REAL_LANES>;
+
+// One wire and field at the plan's energies.
+struct ThermalField {
+    const Wire& of;
+    double B, hop;
+    RotatedWire wire;
+    std::vector<Pairing> pairing;
+    std::vector<LeadSelfEnergy> leads;
+
+    ThermalField(const Wire& of, double B, const std::vector<double>& omega)
+        : of(of), B(B), hop(of.rotated_hopping()), wire(of, B) {
+        for (double w : omega) pairing.push_back(Pairing(of, w)), leads.push_back(lead_self_energy(of, B, w));
+    }
+    double kinetic(double mu) const { return (2 * of.hopping - mu) / hop; }
+
+    Leads around_the_window(const EnergyPlan& plan) const {
+        EndMatrix at[CUBIC];
+        for (int k = 0; k < CUBIC; ++k) {
+            EndMatrix sigma = on_the_ends(leads[plan.picks[k]]);
+            Symmetric8<Complex<double>> M;
+            for (int i = 0; i < 8; ++i)
+                for (int j = i; j < 8; ++j) M(i, j) = {sigma(i, j).real() * hop, sigma(i, j).imag() * hop};
+            chiral(M);
+            for (int i = 0; i < 8; ++i)
+                for (int j = 0; j < 8; ++j) at[k](i, j) = {M(i, j).re, M(i, j).im};
+        }
+        return Leads(plan.cubic, at);
+    }
+
+    static void chiral(Symmetric8<Complex<double>>& M) {
+        for (auto part : {&Complex<double>::re, &Complex<double>::im}) {  // it is a real transformation
+            double X[8][8], row[8], turned[8];
+            for (int i = 0; i < 8; ++i) {
+                for (int j = 0; j < 8; ++j) row[j] = M(i, j).*part;
+                turn_chiral(row, X[i]);
+            }
+            for (int j = 0; j < 8; ++j) {
+                for (int i = 0; i < 8; ++i) row[i] = X[i][j];
+                turn_chiral(row, turned);
+                for (int i = 0; i <= j; ++i) M(i, j).*part = turned[i];
+            }
+        }
+    }
+};
+
+template <class R>
+inline Conductances<double> lane_of(const Conductances<R>& G, int lane) {
+    Conductances<double> out;
+    for (int sign = 0; sign < 2; ++sign)
+        for (int k = 0; k < 4; ++k) out.at[sign][k] = G.at[sign][k][lane];
+    return out;
+}
+
+// Fill the data at the nodes of sets of one wire and field.
+inline void solve_nodes(const ThermalField& field, const EnergyPlan& plan, const double* mu, const SetIndex* sets, int count,
+                        SetData* data) {
+    int nodes = plan.nodes, total = count * nodes;
+    for (int piece = 0; piece < total; piece += SLOPE_LANES) {
+        Terms<Dual<SlopeReal>> terms{};
+        LaneLeads<SlopeReal> leads{};
+        terms.kinetic.slope = 0.0;
+        for (int l = 0; l < SLOPE_LANES; ++l) {
+            int pair = std::min(piece + l, total - 1), e = pair % nodes;
+            const Pairing& p = field.pairing[e];
+            terms.kinetic.value.set(l, field.kinetic(mu[sets[pair / nodes].mu]));
+            terms.normal.value.set(l, p.normal / field.hop), terms.normal.slope.set(l, p.normal_slope / field.hop);
+            terms.anomalous.value.set(l, p.anomalous / field.hop), terms.anomalous.slope.set(l, p.anomalous_slope / field.hop);
+            leads.set(l, field.leads[e]);
+        }
+        auto ends = eliminate_inner_sites(view(field.wire), terms);
+        Ends<SlopeReal> G = attach_leads(ends, leads);
+        auto bare = lossless_conductances_of_ends(G, leads);
+        Symmetric8<Dual<SlopeReal>> isolated;
+        for (int i = 0; i < 4; ++i) {
+            for (int j = i; j < 4; ++j) isolated(i, j) = ends.E(i, j), isolated(4 + i, 4 + j) = ends.D(i, j);
+            for (int j = 0; j < 4; ++j) isolated(i, 4 + j) = ends.C(i, j);
+        }
+        invert(isolated);
+        to_chiral(isolated);
+        for (int l = 0; l < SLOPE_LANES && piece + l < total; ++l) {
+            SetData& of = data[(piece + l) / nodes];
+            int e = (piece + l) % nodes;
+            of.growth = largest(of.growth, ends.growth[l]);
+            of.bare[e] = lane_of(bare, l);
+            for (int i = 0; i < 8; ++i)
+                for (int j = 0; j < 8; ++j) {
+                    of.isolated[e].G[i][j] = isolated(i, j).value[l] / field.hop;
+                    of.isolated[e].slope[i][j] = isolated(i, j).slope[l] / field.hop;
+                }
+        }
+    }
+}
+
+// Add the data at the checks, once the sets' own are known.
+inline void solve_checks(const ThermalField& field, const EnergyPlan& plan, const double* mu, const SetIndex* sets, int count,
+                         SetData* data) {
+    int total = count * COMPARED;
+    for (int piece = 0; piece < total; piece += REAL_LANES) {
+        Terms<CheckReal> terms{};
+        LaneLeads<CheckReal> leads{};
+        for (int l = 0; l < REAL_LANES; ++l) {
+            int pair = std::min(piece + l, total - 1), set = pair / COMPARED, check = pair % COMPARED;
+            bool shared = check < CHECKS;
+            double omega = shared ? plan.omega[plan.nodes + check] : data[set].sought[check - CHECKS];
+            Pairing p = shared ? field.pairing[plan.nodes + check] : Pairing(field.of, omega);
+            terms.kinetic.set(l, field.kinetic(mu[sets[set].mu]));
+            terms.normal.set(l, p.normal / field.hop), terms.anomalous.set(l, p.anomalous / field.hop);
+            leads.set(l, shared ? field.leads[plan.nodes + check] : lead_self_energy(field.of, field.B, omega));
+        }
+        auto ends = eliminate_inner_sites(view(field.wire), terms);
+        Ends<CheckReal> G = attach_leads(ends, leads);
+        auto bare = lossless_conductances_of_ends(G, leads);
+        for (int l = 0; l < REAL_LANES && piece + l < total; ++l) {
+            SetData& of = data[(piece + l) / COMPARED];
+            int check = (piece + l) % COMPARED;
+            of.growth = largest(of.growth, ends.growth[l]);
+            of.bare[plan.nodes + check] = lane_of(bare, l);
+            auto& green = of.green[check];
+            for (int k = 0; k < 36; ++k) green.entry[k] = {G.entry[k].re[l] / field.hop, G.entry[k].im[l] / field.hop};
+            ThermalField::chiral(green);
+        }
+    }
+}
+
+// Average up to SETS sets into out (wire, mu, B, bias, 4) and estimate (wire, mu, B).
+inline void average_sets(const Grid& grid, const EnergyPlan& plan, const SetIndex* sets, int count, double growth_limit,
+                         double* out, double* estimate) {
+    std::vector<SetData> data(count);
+    for (SetData& of : data) of.isolated.resize(plan.nodes), of.bare.resize(plan.nodes + COMPARED), of.growth = 0.0;
+    std::vector<ThermalField> fields;
+    std::vector<int> starts;
+    for (int first = 0; first < count; ++first)
+        if (first == 0 || !sets[first].same_field(sets[first - 1])) {
+            starts.push_back(first);
+            fields.emplace_back(grid.wires[sets[first].wire], grid.B[sets[first].field], plan.omega);
+        }
+    starts.push_back(count);
+    for (size_t k = 0; k < fields.size(); ++k)
+        solve_nodes(fields[k], plan, grid.mu, sets + starts[k], starts[k + 1] - starts[k], &data[starts[k]]);
+    std::vector<const NodeData*> nodes;
+    for (const SetData& of : data) nodes.push_back(of.isolated.data());
+    std::vector<LevelList> levels(count);
+    wire_levels(plan.omega.data(), plan.nodes, nodes, levels.data());
+    for (size_t k = 0; k < fields.size(); ++k) {
+        const ThermalField& field = fields[k];
+        for (int i = starts[k]; i < starts[k + 1]; ++i) dense_energies(levels[i], field.hop, plan.window, data[i].sought);
+        solve_checks(field, plan, grid.mu, sets + starts[k], starts[k + 1] - starts[k], &data[starts[k]]);
+        Leads leads = field.around_the_window(plan);
+        for (int i = starts[k]; i < starts[k + 1]; ++i) {
+            size_t at = (size_t(sets[i].wire) * grid.mu_count + sets[i].mu) * grid.B_count + sets[i].field;
+            estimate[at] = INFINITY;
+            if (!levels[i].empty() && data[i].growth < growth_limit)
+                estimate[at] = rational_average(plan, field.hop, levels[i], data[i], leads, out + at * plan.biases * 4);
+        }
+    }
+}
+
+}  // namespace detail
+
+// Fill G, shape (wire, mu, B, bias, 4), its estimated error and how many energies each set took, (wire, mu, B).
+// grid.omega holds the biases.
+inline void thermal_conductance(const Grid& grid, double kT, double tolerance, double growth_limit, double* G, double* error,
+                                double* energies, Stop& stop) {
+    size_t total = size_t(grid.wire_count) * grid.mu_count * grid.B_count, values = size_t(grid.omega_count) * 4;
+    std::fill(G, G + total * values, 0.0), std::fill(error, error + total, INFINITY), std::fill(energies, energies + total, 0.0);
+    std::vector<std::vector<double>> earlier;
+    auto place = [&](const SetIndex& s) { return (size_t(s.wire) * grid.mu_count + s.mu) * grid.B_count + s.field; };
+    for (int nodes : NODES) {
+        std::vector<SetIndex> sets;
+        for (int w = 0; w < grid.wire_count; ++w)
+            for (int f = 0; f < grid.B_count; ++f)
+                for (int m = 0; m < grid.mu_count; ++m)
+                    if (error[place({w, f, m})] > tolerance) sets.push_back({w, f, m});
+        if (sets.empty()) return;
+        EnergyPlan plan(grid.omega, grid.omega_count, kT, nodes);
+        std::vector<double> found(total * values, NAN), estimate(total, INFINITY);
+        in_parallel(int((sets.size() + SETS - 1) / SETS), stop, [&](int task) {
+            int first = task * SETS, count = std::min(SETS, int(sets.size()) - first);
+            detail::average_sets(grid, plan, &sets[first], count, growth_limit, found.data(), estimate.data());
+        });
+        if (stop.asked()) return;
+        for (const SetIndex& set : sets) {
+            size_t at = place(set);
+            double* now = &found[at * values];
+            energies[at] += nodes + COMPARED;
+            if (!std::isfinite(estimate[at])) std::fill(now, now + values, NAN);
+            for (const auto& other : earlier) {
+                double apart = 0.0;
+                for (size_t k = 0; k < values; ++k) apart = detail::largest(apart, std::abs(now[k] - other[at * values + k]));
+                apart *= AGREEMENT;
+                if (apart < estimate[at]) estimate[at] = std::sqrt(apart * estimate[at]);  // NaN agrees with nothing
+            }
+            estimate[at] += FLOOR;
+            if (estimate[at] < error[at]) {
+                error[at] = estimate[at];
+                std::copy(now, now + values, G + at * values);
+            }
+        }
+        earlier.push_back(std::move(found));
+    }
+}
+
+}  // namespace core

@@ -1,0 +1,147 @@
+// At which energies a set is solved, and what follows from them for all sets alike.
+//
+// What is left of a conductance beside its poles is smooth: the polynomial through its values at ±ω_k =
+// ±W sin(π(k + ½)/2M), Chebyshev's nodes, is averaged exactly.
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "../poles/rows.hpp"
+
+namespace core {
+
+constexpr int CHECKS = 4;   // energies, the same for all sets, at which the model is compared with the solver
+constexpr int SOUGHT = 2;   // further ones, each set's own: where its levels are densest (dense.hpp)
+constexpr int COMPARED = CHECKS + SOUGHT;
+// The lowest of them, where the nodes are at k + ½ and zero is 0: below all nodes, where levels lie that the
+// nodes hardly see.  (Without it 13 of 96,000 sets were off by more than 1e-4 e²/h.)
+constexpr double LOWEST = 0.2;
+// The nodes span this many kT beyond the largest |V|, where 2e-5 of the kernel is cut.
+constexpr double REACH = 11.0;
+constexpr int CUBIC = 4;    // nodes, and coefficients, of the cubic for Σ(ω)
+
+namespace detail {
+
+// Gauss–Legendre nodes and weights on [−1, 1], by Newton's iteration on P_n.
+inline void gauss_legendre(int n, std::vector<double>& x, std::vector<double>& weight) {
+    x.resize(n), weight.resize(n);
+    for (int i = 0; i < n; ++i) {
+        double z = -std::cos(std::numbers::pi * (i + 0.75) / (n + 0.5)), slope = 1.0;
+        for (int step = 0; step < 100; ++step) {
+            double before = 1.0, now = z;
+            for (int k = 2; k <= n; ++k) {
+                double next = ((2 * k - 1) * z * now - (k - 1) * before) / k;
+                before = now, now = next;
+            }
+            slope = n * (z * now - before) / (z * z - 1);
+            double change = now / slope;
+            z -= change;
+            if (std::abs(change) < 1e-15) break;
+        }
+        x[i] = z;
+        weight[i] = 2 / ((1 - z * z) * slope * slope);
+    }
+}
+
+// The weights of the values at ω_k, then −ω_k, that give Σ_x share_x f(W u_x) of the polynomial f through them.
+inline std::vector<double> interpolated(const std::vector<double>& u, const std::vector<double>& share, int nodes) {
+    int terms = 2 * nodes;
+    std::vector<double> moments(terms, 0.0), weights(terms);
+    for (size_t i = 0; i < u.size(); ++i) {
+        double before = 1.0, now = u[i];
+        moments[0] += share[i];
+        for (int n = 1; n < terms; ++n) {
+            moments[n] += share[i] * now;
+            double next = 2 * u[i] * now - before;
+            before = now, now = next;
+        }
+    }
+    for (int k = 0; k < nodes; ++k)
+        for (int sign = 0; sign < 2; ++sign) {
+            double at = std::sin(std::numbers::pi * (k + 0.5) / terms) * (sign == 0 ? 1 : -1);
+            double before = 1.0, now = at, total = 0.5 * moments[0];
+            for (int n = 1; n < terms; ++n) {
+                total += moments[n] * now;
+                double next = 2 * at * now - before;
+                before = now, now = next;
+            }
+            weights[sign * nodes + k] = total / nodes;
+        }
+    return weights;
+}
+
+}  // namespace detail
+
+struct EnergyPlan {
+    int nodes, biases;
+    double window, kT;                 // W in meV
+    std::vector<double> omega;         // nodes, then checks
+    std::vector<double> bias;
+    int picks[CUBIC];                  // nodes through which Σ is interpolated
+    double cubic[CUBIC][CUBIC];        // inverse of their Vandermonde matrix
+    std::vector<std::vector<double>> weights;    // (bias, 2·node), of the smooth part's values at ω_k, then −ω_k
+    std::vector<std::vector<double>> at_checks;  // (2·CHECKS, 2·node), of the same for its values at ± the checks
+
+    EnergyPlan(const double* V, int count, double kT, int nodes) : nodes(nodes), biases(count), kT(kT), bias(V, V + count) {
+        double largest = 0.0;
+        for (double v : bias) largest = std::max(largest, std::abs(v));
+        window = largest + REACH * kT;
+        for (int k = 0; k < nodes; ++k) omega.push_back(window * std::sin(std::numbers::pi * (k + 0.5) / (2 * nodes)));
+        for (int k = 0; k < CHECKS; ++k) {
+            double between = k == 0 ? LOWEST : double(k * (nodes - 1) / CHECKS);
+            omega.push_back(window * std::sin(std::numbers::pi * between / (2 * nodes)));
+        }
+        for (int k = 0; k < CUBIC; ++k) picks[k] = int((k + 0.5) * nodes / CUBIC);
+        invert_vandermonde();
+        std::vector<double> x, dx;
+        detail::gauss_legendre(240, x, dx);
+        double all = 0.0;
+        for (size_t i = 0; i < x.size(); ++i) {
+            double half = 1 / std::cosh(16 * x[i]);
+            dx[i] *= half * half;
+            all += dx[i];
+        }
+        for (double& share : dx) share /= all;
+        for (double v : bias) {
+            std::vector<double> u(x.size());
+            for (size_t i = 0; i < x.size(); ++i) u[i] = std::clamp((v + kT * 32 * x[i]) / window, -1.0, 1.0);
+            weights.push_back(detail::interpolated(u, dx, nodes));
+        }
+        for (int sign : {1, -1})
+            for (int k = 0; k < CHECKS; ++k) at_checks.push_back(detail::interpolated({sign * omega[nodes + k] / window}, {1.0}, nodes));
+    }
+
+    // The weights of the smooth part's values at the nodes for that at any ω but a node: the barycentric
+    // formula, in which Chebyshev's node u has ±√(1 − u²).
+    std::vector<double> weights_at(double at) const {
+        std::vector<double> weights(2 * nodes);
+        double total = 0.0;
+        for (int n = 0; n < 2 * nodes; ++n) {
+            double u = omega[n % nodes] / window * (n < nodes ? 1 : -1);
+            weights[n] = std::sqrt(1 - u * u) / (at / window - u) * ((n % nodes + n / nodes) % 2 == 1 ? -1 : 1);
+            total += weights[n];
+        }
+        for (double& weight : weights) weight /= total;
+        return weights;
+    }
+
+private:
+    // Of the Lagrange polynomials through the picks the coefficients are the columns of the inverse.
+    void invert_vandermonde() {
+        for (int k = 0; k < CUBIC; ++k) {
+            double coefficient[CUBIC] = {1.0}, scale = 1.0;
+            int degree = 0;
+            for (int j = 0; j < CUBIC; ++j) {
+                if (j == k) continue;
+                double root = omega[picks[j]];
+                for (int i = ++degree; i >= 0; --i) coefficient[i] = (i > 0 ? coefficient[i - 1] : 0.0) - root * coefficient[i];
+                scale *= omega[picks[k]] - root;
+            }
+            for (int i = 0; i < CUBIC; ++i) cubic[i][k] = coefficient[i] / scale;
+        }
+    }
+};
+
+}  // namespace core
