@@ -354,3 +354,12 @@ def test_two_sites_without_a_parent_along_the_spin_orbit_field():
     G, error, _ = exact_average(*arguments, theta=np.pi / 2)
     exact = thermal_quadrature(*arguments, theta=np.pi / 2)
     assert abs(G - exact.conductance).max() <= 3 * error.item() + exact.error.item()
+
+
+def test_a_field_that_rounding_hides_at_the_crossing_of_spins_is_none():
+    """The roots are all but twofold: rounding decided on the modes, and G_LL was off by 0.1."""
+    wire = Nanowire(np.zeros(2), lead_mu=0.0)
+    along = tilted_lead_self_energies(wire, 0.0, np.zeros(1), np.pi / 2)
+    assert_allclose(
+        tilted_lead_self_energies(wire, 2e-11, np.zeros(1), np.pi / 2), along, rtol=0, atol=1e-8
+    )

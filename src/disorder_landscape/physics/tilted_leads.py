@@ -33,9 +33,9 @@ ON_THE_CIRCLE = 1e-7
 SMALL = 0.02
 """By up to this part of the distance between outgoing and incoming modes, of any spin, the field
 may move them for the iteration to start without it."""
-NEGLIGIBLE = 1e-12
-"""V_Z/t' up to which the field is left out; where incoming and outgoing modes of two spins cross,
-it would be told from no field only by rounding."""
+NEGLIGIBLE = 1e-8
+"""V_Z/t' up to which the field is left out where incoming and outgoing modes of two spins cross:
+there rounding moves the modes, all but twofold roots, by as much."""
 STEPS = 6
 """Steps of Newton's iteration: from 0.02 it takes four."""
 
@@ -103,17 +103,16 @@ def _electron_self_energies(
         np.array([sine, (sine * t + cosine * s) / hopping, (sine * t - cosine * s) / hopping])
     )
     small = size < 4 * SMALL * hopping * abs(sine) * apart.min(axis=0)
-    small |= size < NEGLIGIBLE * hopping
+    lost = ~small & (size < NEGLIGIBLE * hopping)
     sigma = np.empty((E.size, 2, 2, 2), dtype=np.complex128)
     for lead, power, coupling in ((0, -1, hop.T), (1, 1, hop)):
         modes = order[:, 2 - 2 * lead : 4 - 2 * lead]
         U = np.take_along_axis(spinor, modes[:, None], axis=2)  # (energy, spin, mode)
         shifts = np.take_along_axis(lam, modes, axis=1) ** power
-        U[small] = np.eye(2)
+        U[small | lost] = np.eye(2)
         F = (U * shifts[:, None]) @ np.linalg.inv(U)
-        F[small] = (free[:, None, None] * np.linalg.inv(coupling))[small]
-        if size >= NEGLIGIBLE * hopping:
-            F = _refined(F, coupling, H0)
+        F[small | lost] = (free[:, None, None] * np.linalg.inv(coupling))[small | lost]
+        F[~lost] = _refined(F[~lost], coupling, H0[~lost])
         sigma[:, lead] = coupling @ F
     return sigma
 
