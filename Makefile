@@ -29,8 +29,8 @@ COMPILE := .venv/bin/uv pip compile --universal --python-version 3.11 --generate
 
 STARTED := $(shell date +%s)
 
-.PHONY: help setup generate train evaluate figures $(FIGURES) bench accuracy study inversion-study
-.PHONY: claims claims-table report test sanitize lint lock clean
+.PHONY: help setup generate train evaluate figures $(FIGURES) bench accuracy odd-wires study
+.PHONY: inversion-study claims claims-table report test sanitize lint lock clean
 .SUFFIXES:
 # One after the other: each command uses all cores by itself.
 .NOTPARALLEL:
@@ -67,6 +67,9 @@ bench: $(READY) ## time the solvers, table and plot into build/bench (a few minu
 
 accuracy: $(READY) ## compare 2000 thermal averages with the integral by brute force
 	$(VENV_PYTHON) claims/accuracy.py
+
+odd-wires: $(READY) ## compare odd wires with Kwant and with the integral by brute force (an hour)
+	$(VENV_PYTHON) claims/odd_wires.py
 
 study: $(READY) ## carry out the study STUDY of configs/studies, its table into claims (hours)
 	$(LANDSCAPE) study configs/studies/$(STUDY).toml

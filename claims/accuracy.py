@@ -33,11 +33,11 @@ from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.dataset.store import provenance
 from disorder_landscape.files import check_writable, replacing, write_json
-from disorder_landscape.physics import finite_temperature
 from disorder_landscape.physics.disorder import disorder_realization
 from disorder_landscape.physics.parameters import B_MAX, BOLTZMANN, MU_MAX, SITES, FloatArray
 from disorder_landscape.physics.quadrature import REACH, thermal_quadrature
 from disorder_landscape.physics.transport import exact_average
+from disorder_landscape.solver.compiled import core
 
 SEED = 20
 KINDS = ("pristine", "5 weak", "5 strong", "10 weak", "10 strong", "30 weak", "30 strong", "noise")
@@ -156,8 +156,9 @@ def study(wires: int, workers: int, folder: Path) -> dict[str, FloatArray]:
 
 def _fingerprint() -> str:
     """Return a name for the results of these very solvers and cases, so that no others are read."""
-    physics = Path(finite_temperature.__file__).parent
-    text = [path.read_bytes() for path in sorted(physics.glob("*.py"))]
+    root = Path(__file__).parents[1]
+    paths = [*root.glob("src/disorder_landscape/physics/*.py"), *root.glob("core/**/*.hpp")]
+    text = [path.read_bytes() for path in sorted(paths)]
     text += [inspect.getsource(function).encode() for function in (random_case, measure)]
     text.append(repr([SEED, TEMPERATURES, BIASES, BIAS_MAX, BRUTE, FINER, BELOW_GAP]).encode())
     text.append(repr([FINER_EVERY, WIRES_OF_CHUNK]).encode())
@@ -222,8 +223,8 @@ def _group(measured: dict[str, FloatArray]) -> dict[str, Any]:
     """Return the numbers of one kind of wire; a set is one wire with its five biases."""
     error, estimate, energies = (measured[name] for name in ("error", "estimate", "energies"))
     worst = error.max(axis=(1, 2))
-    checks = finite_temperature.COMPARED
-    most = sum(nodes + checks for nodes in finite_temperature.NODES)
+    checks = core.COMPARED
+    most = sum(nodes + checks for nodes in core.NODES)
     rational = energies <= most
     numbers, sets = np.unique(energies[rational], return_counts=True)
     return {

@@ -121,6 +121,11 @@ nb::tuple thermal(Matrix V, Matrix parameters, Vector mu, Vector B, Vector bias,
 }  // namespace
 
 NB_MODULE(CORE_MODULE, m) {
+    m.attr("TOLERANCE") = core::TOLERANCE;
+    m.attr("FLOOR") = core::FLOOR;
+    m.attr("REACH") = core::REACH;
+    m.attr("NODES") = std::vector<int>(std::begin(core::NODES), std::end(core::NODES));
+    m.attr("COMPARED") = core::COMPARED;
     m.def("instruction_set", [] { return CORE_TEXT(CORE_VARIANT); });
     m.def("supported_variants", &core::supported_variants);
     m.def("set_threads", [](int count) { return core::thread_count().exchange(std::max(1, count)); }, nb::arg("count"));

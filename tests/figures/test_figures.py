@@ -19,7 +19,7 @@ from command import Request
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.chain import preset_run
 from disorder_landscape.physics.disorder import cosine_components
-from disorder_landscape.physics.finite_temperature import TOLERANCE
+from disorder_landscape.solver.compiled import core
 from plotting import COLUMN, FULL_WIDTH, paper_style
 
 SCRIPTS = {
@@ -186,7 +186,7 @@ def test_conductances_are_the_simulated_wires(figure, y, drawn, evaluation, conf
 def test_nonlocal_conductances_agree_at_zero_bias(drawn):
     """Thermal averages at V = 0 are even in ω, and particle-hole symmetry does the rest."""
     data = drawn("figure_S5")
-    np.testing.assert_allclose(data["G_LR"], data["G_RL"], atol=2 * TOLERANCE)
+    np.testing.assert_allclose(data["G_LR"], data["G_RL"], atol=2 * core.TOLERANCE)
 
 
 @pytest.mark.parametrize("figure", ["figure_3", "figure_S5"])
@@ -342,7 +342,7 @@ def test_the_pristine_conductances_are_simulated_and_mirror_symmetric(drawn, con
             np.testing.assert_allclose(drawn_map, G[name].transpose(*drawn_map.dims), atol=1e-12)
         for one, other in (("G_LL", "G_RR"), ("G_LR", "G_RL")):
             np.testing.assert_allclose(
-                data[f"{one}_{letter}"], data[f"{other}_{letter}"], atol=2 * TOLERANCE
+                data[f"{one}_{letter}"], data[f"{other}_{letter}"], atol=2 * core.TOLERANCE
             )
 
 

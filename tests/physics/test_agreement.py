@@ -161,7 +161,7 @@ MAJORANAS = {
         1.0,
     ),
     "disorder": (Nanowire(np.random.default_rng(1).normal(0, 0.3, 600), alpha=20.0), 0.5),
-    "a part": (partly_trivial(330, 300), 0.5),
+    "a part": (partly_trivial(360, 330), 0.5),
 }
 """Wires at µ = 0 and a field, in which moderate pivots hid the loss of all digits at ω = 0."""
 

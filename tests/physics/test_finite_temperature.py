@@ -1,6 +1,5 @@
 """The exact thermal average: against the adaptive integral, and against itself."""
 
-import numba
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
@@ -9,11 +8,12 @@ import disorder_landscape as dl
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset.realizations import realization
-from disorder_landscape.physics import dense_levels, energy_plan, finite_temperature
+from disorder_landscape.physics import dense_levels, energy_plan
 from disorder_landscape.physics.disorder import disorder_realization, potential_from_components
 from disorder_landscape.physics.parameters import BIAS
 from disorder_landscape.physics.quadrature import thermal_quadrature
 from disorder_landscape.physics.transport import exact_average
+from disorder_landscape.solver import compiled
 from random_wires import random_wire
 
 
@@ -47,7 +47,7 @@ def test_poles_that_all_but_meet(seed):
     found, estimate, energies = exact_average([wire], *arguments)
     exact = thermal_quadrature([wire], *arguments, panel=0.05, tolerance=1e-8)
     assert abs(found - exact.conductance).max() <= estimate.item() + exact.error.item()
-    assert energies.item() == finite_temperature.NODES[0] + energy_plan.COMPARED
+    assert energies.item() == compiled.core.NODES[0] + compiled.core.COMPARED
 
 
 def test_conductances_are_smooth_where_two_poles_meet_and_part():
@@ -71,7 +71,7 @@ def test_conductances_are_smooth_where_two_poles_meet_and_part():
     along_B = found.reshape(u.size, -1)
     smooth = np.polynomial.polynomial.polyfit(u, along_B, 3)
     assert_allclose(along_B, np.polynomial.polynomial.polyval(u, smooth).T, rtol=0, atol=1e-6)
-    assert estimate.max() < finite_temperature.TOLERANCE
+    assert estimate.max() < compiled.core.TOLERANCE
 
 
 @pytest.mark.slow
@@ -163,13 +163,13 @@ def test_the_order_of_wires_potentials_and_fields_leaves_no_trace(grid, whole):
 
 
 def test_the_number_of_threads_leaves_no_trace(grid, whole):
-    before = numba.get_num_threads()
+    before = compiled.core.set_threads(1)
     try:
-        for threads in {1, min(2, numba.config.NUMBA_NUM_THREADS)}:
-            numba.set_num_threads(threads)
+        for threads in (1, 2):
+            compiled.core.set_threads(threads)
             same(exact_average(*grid), whole)
     finally:
-        numba.set_num_threads(before)
+        compiled.core.set_threads(before)
 
 
 def test_what_memory_held_before_leaves_no_trace():
@@ -220,8 +220,8 @@ def test_what_an_exact_average_tells_of_itself():
     for name in ("error", "energies"):
         assert G[name].dims == ("realization", "mu", "B")
     assert (G.error > 0).all()
-    assert (G.error <= finite_temperature.TOLERANCE).all()
-    fewest = finite_temperature.NODES[0] + energy_plan.COMPARED
+    assert (G.error <= compiled.core.TOLERANCE).all()
+    fewest = compiled.core.NODES[0] + compiled.core.COMPARED
     assert G.energies.dtype.kind == "i"
     assert G.energies.min() == fewest
     for other in ({"temperature": 0}, {"energy_spacing": 4e-3}):
@@ -289,7 +289,7 @@ def test_levels_denser_than_the_nodes_are_seen(name):
     """The error was 8e-4 to 0.01 e²/h, 140 to 940 times the estimate."""
     wire, (mu, B, bias, temperature) = DENSE[name]
     arguments = [wire], np.array([mu]), np.array([B]), np.array(bias), temperature
-    found, estimate, _ = finite_temperature.thermal_conductance(*arguments)
+    found, estimate, _ = compiled.thermal_conductance(*arguments)
     exact = thermal_quadrature(*arguments)
     assert abs(found - exact.conductance).max() <= 3 * estimate.item() + exact.error.item()
 

@@ -325,6 +325,16 @@ def test_self_energies_solve_their_equation_at_any_field(lead_alpha, B):
             assert (np.linalg.eigvalsh(gamma) > -1e-11 * t).all()
 
 
+@pytest.mark.parametrize(("B", "g"), [(4e-14, 35.0), (-0.2, 0.05), (0.6, 0.006), (0.1, 1.0)])
+def test_leads_at_the_crossing_of_their_spins(B, g):
+    """At μ_lead = 0 modes in and out meet at k = 0, but for V_Z: G_LL was off by 0.6."""
+    wire = Nanowire(np.random.default_rng(4).normal(0, 0.5, 30), lead_mu=0.0, lead_g=g, gamma=0.7)
+    for theta in (-1.4, 2.5):
+        found = bare(wire, 0.2, B, 0.0, theta)
+        expected = bare(wire, 0.2, B, 0.0, theta, solver=kwant_solver)
+        assert_allclose(found, expected, atol=1e-7)
+
+
 @pytest.mark.parametrize(
     ("seed", "sites", "lead_mu"), [(1, 2, 50.0), (2, 3, 50.0), (3, 7, 1.0), (4, 20, 50.0)]
 )
@@ -344,3 +354,12 @@ def test_two_sites_without_a_parent_along_the_spin_orbit_field():
     G, error, _ = exact_average(*arguments, theta=np.pi / 2)
     exact = thermal_quadrature(*arguments, theta=np.pi / 2)
     assert abs(G - exact.conductance).max() <= 3 * error.item() + exact.error.item()
+
+
+def test_a_field_that_rounding_hides_at_the_crossing_of_spins_is_none():
+    """The roots are all but twofold: rounding decided on the modes, and G_LL was off by 0.1."""
+    wire = Nanowire(np.zeros(2), lead_mu=0.0)
+    along = tilted_lead_self_energies(wire, 0.0, np.zeros(1), np.pi / 2)
+    assert_allclose(
+        tilted_lead_self_energies(wire, 2e-11, np.zeros(1), np.pi / 2), along, rtol=0, atol=1e-8
+    )

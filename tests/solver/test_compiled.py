@@ -9,6 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from disorder_landscape import ArgumentError, Nanowire
+from disorder_landscape.physics.parameters import BIAS, BOLTZMANN, TEMPERATURE
 from disorder_landscape.solver import compiled
 
 
@@ -16,13 +17,16 @@ def on_a_grid(core):
     """Return everything that a variant computes, of random wires at random points."""
     rng = np.random.default_rng(1)
     wires = [Nanowire(rng.normal(0, 0.3, 300), alpha=a) for a in (2.0, 8.0, 20.0)]
-    arrays = compiled.handed_over(wires)
+    arrays, kT = compiled.handed_over(wires), BOLTZMANN * TEMPERATURE
     mu, B, omega = rng.uniform(0, 0.6, 5), rng.uniform(-0.1, 0.8, 3), rng.uniform(0, 0.11, 7)
     return [
         core.real_conductance(*arrays, mu, B, omega, compiled.GROWTH_LIMIT),
         core.real_conductance(*arrays, mu, B, omega, 0.0),  # pivoted
         core.complex_conductance(*arrays, mu, B, 5 * omega, compiled.GROWTH_LIMIT),
         core.reflection_determinant(*arrays, mu, B, np.zeros(1), compiled.GROWTH_LIMIT),
+        *core.thermal_conductance(
+            *arrays, mu, B, np.array(BIAS), kT, core.TOLERANCE, compiled.GROWTH_LIMIT
+        ),
     ]
 
 
@@ -44,8 +48,10 @@ def test_variants_with_multiply_adds_give_the_same_bits():
 @pytest.mark.parametrize("name", compiled.supported())
 def test_the_stub_names_what_every_variant_has(name):
     stub = Path(compiled.__file__).with_name("_core_baseline.pyi")
-    stated = {node.name for node in ast.parse(stub.read_text()).body if hasattr(node, "name")}
-    assert stated == {function for function in vars(compiled.variant(name)) if function[0] != "_"}
+    body = ast.parse(stub.read_text()).body
+    stated = {node.name for node in body if isinstance(node, ast.FunctionDef)}
+    stated |= {ast.unparse(node.target) for node in body if isinstance(node, ast.AnnAssign)}
+    assert stated == {given for given in vars(compiled.variant(name)) if given[0] != "_"}
 
 
 def test_the_fastest_is_chosen(monkeypatch):

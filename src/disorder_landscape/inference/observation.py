@@ -13,11 +13,11 @@ from disorder_landscape.arguments import number_in, require
 from disorder_landscape.inference.measurement import Measurement, simulated
 from disorder_landscape.inference.unknowns import Unknowns
 from disorder_landscape.learning.scaling import NOISE_FLOOR
-from disorder_landscape.physics.finite_temperature import TOLERANCE
 from disorder_landscape.physics.labels import CONDUCTANCES
 from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.solver import compiled
 
-SOLVER_ERROR = TOLERANCE
+SOLVER_ERROR = compiled.core.TOLERANCE
 """In e²/h: what the simulation is exact to, below which no noise can be told from none."""
 FEW = 7
 """Lines of a grid of which none is left out."""

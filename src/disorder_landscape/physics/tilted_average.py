@@ -1,6 +1,6 @@
 """The conductance at finite temperature in a tilted field, in closed form.
 
-As in `finite_temperature`, but for one set (wire, μ, B) after the other and with dense matrices: at
+As in core/thermal, but for one set (wire, μ, B) after the other and with dense matrices: at
 θ ≠ 0 nothing is real or symmetric. With H = iA of the isolated wire (`tilted_levels`) and the
 leads' self-energies, linear in energy, iΣ₀ + zΣ₁, the ends' Green's function is
 
@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import ThreadpoolController
 
-from disorder_landscape.physics import finite_temperature, tilted_field
+from disorder_landscape.physics import tilted_field
 from disorder_landscape.physics.hamiltonian import ComplexArray
 from disorder_landscape.physics.leads import rotate_spin
 from disorder_landscape.physics.parameters import BOLTZMANN, FloatArray, Nanowire
@@ -35,6 +35,7 @@ from disorder_landscape.physics.thermal_poles import (
 )
 from disorder_landscape.physics.tilted_leads import tilted_lead_self_energies
 from disorder_landscape.physics.tilted_levels import BASIS, isolated_wire
+from disorder_landscape.solver import compiled
 
 NODES = (10, 16, 24)
 """Numbers of energies for the levels that are tried in turn."""
@@ -80,7 +81,7 @@ def thermal_conductance(
 ) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
     """Return conductances, their estimated error and how many energies each set took.
 
-    As `finite_temperature.thermal_conductance`, in a field at the angle θ.
+    As `compiled.thermal_conductance`, in a field at the angle θ.
 
     Returns
     -------
@@ -95,7 +96,7 @@ def thermal_conductance(
         field, one = B[f : f + 1], [wires[w]]
         zeeman = max(wires[w].zeeman_per_tesla, wires[w].lead_zeeman_per_tesla) * abs(B[f])
         if zeeman <= TWOFOLD * BOLTZMANN * temperature:
-            straight = finite_temperature.thermal_conductance(one, mu, field, bias, temperature)
+            straight = compiled.thermal_conductance(one, mu, field, bias, temperature)
             G[w, :, f], error[w, :, f], energies[w, :, f] = (part[0, :, 0] for part in straight)
             continue
         average = _Average(wires[w], float(field[0]), bias, BOLTZMANN * temperature, theta)
@@ -166,7 +167,7 @@ class _Average:
             np.concatenate([some[:, 0], some[:, 1]]) - 2 * (1 / (at[:, None] - z) @ residues).real
             for at, some in ((signed, bare[:SMOOTH]), (checks, bare[SMOOTH:]))
         ]
-        error = abs(self.check @ rest[0] - rest[1]).max() + finite_temperature.FLOOR
+        error = abs(self.check @ rest[0] - rest[1]).max() + compiled.core.FLOOR
         unit = 2 * np.pi * self.kT
         shares = _trigamma(0.5 + 1j * (z - self.bias[:, None]) / unit) / (1j * unit)
         return 2 * (shares @ residues).real + self.smooth @ rest[0], float(error)

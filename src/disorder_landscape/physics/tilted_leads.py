@@ -10,10 +10,10 @@ its group velocity 2t sin k + 2sw cos k/m points there. With spinors u in the co
 right lead's self-energy is (hopping) U λ U⁻¹, the left lead's, from the other two, (hopping)† U λ⁻¹
 U⁻¹. The hole block at E is −σy Σ(−E)* σy as for θ = 0.
 
-Where spins are all but degenerate, the spinors lose all digits. So F = U λ U⁻¹ is only the start of
-Newton's iteration for T F² − (E − H₀) F + T† = 0, T the hopping, of which each step is linear in
-the entries of F; and where V_Z is small, compared with what it takes to move a mode to the band
-edge, the start is F without a field (`leads`).
+Where spins are all but degenerate, the spinors lose all digits. So F = U λ U⁻¹ is only the start
+of Newton's iteration for T F² − (E − H₀) F + T† = 0, T the hopping, of which each step is linear in
+the entries of F; and where V_Z is small, compared with what it takes to make an outgoing mode meet
+an incoming one, the start is F without a field (`leads`).
 """
 
 from __future__ import annotations
@@ -31,7 +31,11 @@ from disorder_landscape.physics.parameters import FloatArray, Nanowire
 ON_THE_CIRCLE = 1e-7
 """How close to 1 |λ| is taken for that of a propagating mode."""
 SMALL = 0.02
-"""V_Z/4t' sin²k up to which the iteration starts without the field."""
+"""By up to this part of the distance between outgoing and incoming modes, of any spin, the field
+may move them for the iteration to start without it."""
+NEGLIGIBLE = 1e-8
+"""V_Z/t' up to which the field is left out where incoming and outgoing modes of two spins cross:
+there rounding moves the modes, all but twofold roots, by as much."""
 STEPS = 6
 """Steps of Newton's iteration: from 0.02 it takes four."""
 
@@ -92,17 +96,24 @@ def _electron_self_energies(
     hop = np.array([[-t, -s], [s, -t]], dtype=np.complex128)
     H0 = along * PAULI["x"] + across * PAULI["y"] - shifted[:, None] * np.eye(2)  # and −E
     free = np.array([outgoing_without_field(e, t, s, wire.lead_mu) for e in E])
-    sine_squared = abs(1 - (shifted[:, 0] / (2 * np.hypot(t, s))) ** 2)
-    small = np.hypot(along, across) < 4 * SMALL * np.hypot(t, s) * sine_squared
+    size, hopping = np.hypot(along, across), np.hypot(t, s)
+    cosine = -shifted[:, 0] / (2 * hopping) + 0j  # of k without field, but for ±atan(s/t)
+    sine = np.sqrt(1 - cosine**2)
+    apart = abs(
+        np.array([sine, (sine * t + cosine * s) / hopping, (sine * t - cosine * s) / hopping])
+    )
+    small = size < 4 * SMALL * hopping * abs(sine) * apart.min(axis=0)
+    lost = ~small & (size < NEGLIGIBLE * hopping)
     sigma = np.empty((E.size, 2, 2, 2), dtype=np.complex128)
     for lead, power, coupling in ((0, -1, hop.T), (1, 1, hop)):
         modes = order[:, 2 - 2 * lead : 4 - 2 * lead]
         U = np.take_along_axis(spinor, modes[:, None], axis=2)  # (energy, spin, mode)
         shifts = np.take_along_axis(lam, modes, axis=1) ** power
-        U[small] = np.eye(2)
+        U[small | lost] = np.eye(2)
         F = (U * shifts[:, None]) @ np.linalg.inv(U)
-        F[small] = (free[:, None, None] * np.linalg.inv(coupling))[small]
-        sigma[:, lead] = coupling @ _refined(F, coupling, H0)
+        F[small | lost] = (free[:, None, None] * np.linalg.inv(coupling))[small | lost]
+        F[~lost] = _refined(F[~lost], coupling, H0[~lost])
+        sigma[:, lead] = coupling @ F
     return sigma
 
 

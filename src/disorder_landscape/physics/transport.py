@@ -11,15 +11,13 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from disorder_landscape.arguments import grid_in, number_in
-from disorder_landscape.physics import tilted_average
-from disorder_landscape.physics.finite_temperature import TOLERANCE, thermal_conductance
 from disorder_landscape.physics.hamiltonian import FULL_TURN
 from disorder_landscape.physics.labels import CONDUCTANCES, labelled
 from disorder_landscape.physics.parameters import BOLTZMANN, TEMPERATURE, FloatArray, Nanowire
 from disorder_landscape.physics.quadrature import thermal_quadrature
 from disorder_landscape.physics.solvers import solver_functions, wires_of
 from disorder_landscape.physics.thermal import ENERGY_SPACING, thermal_grid
-from disorder_landscape.physics.thermal_poles import REACH
+from disorder_landscape.solver import compiled
 
 BLOCK_ENERGIES = {"fast": 2**18, "kwant": 2**8, "tilted": 2**14}
 """Energies that each solver is given at a time: about 16 MB and one second."""
@@ -144,7 +142,7 @@ def exact_average(
     """Return the thermal average, its estimated error and the number of energies it took.
 
     Rational in energy and in closed form where the thermal window stays below the gap
-    (`finite_temperature`, `tilted_average`); by adaptive quadrature (`quadrature`) where it does
+    (`compiled`, `tilted_average`); by adaptive quadrature (`quadrature`) where it does
     not or the wire has dissipation, and for the rare set of which no rational model within the
     tolerance is found.
 
@@ -154,17 +152,19 @@ def exact_average(
         G_LL, G_RR, G_LR, G_RL in e²/h.
     error, energies : array, shape (wire, mu, B)
     """
-    window = abs(bias).max() + REACH * BOLTZMANN * temperature
+    window = abs(bias).max() + compiled.core.REACH * BOLTZMANN * temperature
     dissipative = any(w.dissipation > 0 for w in wires)
     if dissipative or window > BELOW_GAP * min(w.delta0 for w in wires):
         return thermal_quadrature(wires, mu, B, bias, temperature, theta=theta)
     if theta == 0:
-        G, error, energies = thermal_conductance(wires, mu, B, bias, temperature)
+        G, error, energies = compiled.thermal_conductance(wires, mu, B, bias, temperature)
     else:
+        from disorder_landscape.physics import tilted_average  # Numba takes seconds to import
+
         G, error, energies = tilted_average.thermal_conductance(
             wires, mu, B, bias, temperature, theta
         )
-    for w, m, f in np.argwhere(~(error <= TOLERANCE)):
+    for w, m, f in np.argwhere(~(error <= compiled.core.TOLERANCE)):
         one = thermal_quadrature(
             [wires[w]], mu[m : m + 1], B[f : f + 1], bias, temperature, theta=theta
         )

@@ -2,6 +2,12 @@
 
 from disorder_landscape.physics.parameters import FloatArray
 
+TOLERANCE: float
+FLOOR: float
+REACH: float
+NODES: list[int]
+COMPARED: int
+
 def instruction_set() -> str: ...
 def supported_variants() -> list[str]: ...
 def set_threads(count: int) -> int: ...

@@ -12,9 +12,10 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from disorder_landscape.arguments import require
-from disorder_landscape.physics.parameters import FloatArray, Nanowire
+from disorder_landscape.physics.parameters import BOLTZMANN, FloatArray, Nanowire
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -26,6 +27,7 @@ __all__ = [
     "core",
     "real_conductance",
     "reflection_determinant",
+    "thermal_conductance",
 ]
 
 CHOICE = "DISORDER_LANDSCAPE_CORE"
@@ -145,3 +147,29 @@ def reflection_determinant(
         *handed_over(wires), mu, B, np.zeros(1), growth_limit
     )
     return T
+
+
+def thermal_conductance(
+    wires: Sequence[Nanowire],
+    mu: FloatArray,
+    B: FloatArray,
+    bias: FloatArray,
+    temperature: float,
+    tolerance: float | None = None,
+    growth_limit: float = GROWTH_LIMIT,
+) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
+    """Return thermal averages, their estimated error and how many energies each set took.
+
+    The thermal window, REACH kT beyond each |bias|, must end below the gap, and the wires must have
+    no dissipation. Nodes are added where the error is more than the tolerance in e²/h.
+
+    Returns
+    -------
+    G : array, shape (wire, mu, B, bias, 4)
+        G_LL, G_RR, G_LR, G_RL in e²/h.
+    error, energies : array, shape (wire, mu, B)
+    """
+    limit = core.TOLERANCE if tolerance is None else tolerance
+    arguments = mu, B, bias, BOLTZMANN * temperature, limit, growth_limit
+    G, error, energies = core.thermal_conductance(*handed_over(wires), *arguments)
+    return G, error, energies.astype(np.int64)

@@ -1,0 +1,51 @@
+"""The search among odd wires, of a few."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "claims"))  # as if run as a script
+
+import odd_wires
+
+
+def test_cases_are_drawn_from_their_index():
+    one, again = odd_wires.any_case(3, 7), odd_wires.any_case(3, 7)
+    np.testing.assert_array_equal(one.wire.potential, again.wire.potential)
+    assert (one.mu, one.B, one.theta) == (again.mu, again.B, again.theta)
+    for index in range(200):
+        odd_wires.any_case(0, index)
+        odd_wires.warm_case(0, index)
+
+
+def test_the_search_goes_on_where_it_stopped_and_finds_nothing(tmp_path, capsys):
+    with pytest.raises(SystemExit) as first:
+        odd_wires.main(["--count", "5", "--warm", "3", "--build", str(tmp_path)])
+    assert first.value.code == 0
+    assert "5 wires" in capsys.readouterr().out
+    files = sorted(tmp_path.iterdir())
+    before = [path.read_text() for path in files]
+    with pytest.raises(SystemExit):
+        odd_wires.main(["--count", "6", "--warm", "3", "--build", str(tmp_path)])
+    after = [path.read_text() for path in files]
+    assert after[0].startswith(before[0])
+    assert after[1].startswith(before[1])
+
+
+def test_what_is_wrong_fails():
+    wrong = {"index": 1, "error": 1e-3, "unknown": 0.0, "omega": 0.0}
+    assert not odd_wires.report([wrong], [])[1]
+    assert odd_wires.report([{**wrong, "unknown": 1e-4}], [])[1]
+    off = {"index": 2, "error": 1e-3, "estimate": 1e-5, "integral": 1e-7}
+    text, passed = odd_wires.report([], [off])
+    assert not passed
+    assert "accepted, of 1 " in text
+
+
+def test_wrong_arguments_are_one_sentence(capsys):
+    with pytest.raises(SystemExit) as end:
+        odd_wires.main(["--count", "-1"])
+    assert end.value.code == 2
+    assert "Argument count must not be negative" in capsys.readouterr().err
