@@ -24,7 +24,7 @@ struct NodeData {
 
 struct Pencil {
     int n = 0, rank = 0;
-    std::vector<double> A;     // (rank, n): row k holds columns rank − 1 down to k of the matrix
+    std::vector<double> A;     // (rank, n): row k holds columns rank − 1 down to 0 of the matrix
     std::vector<double> rows;  // (rank, 8), what the ends see
 
     // omega: the nodes in meV.
@@ -124,6 +124,8 @@ private:
             subtract_rows(a, A.data(), n, l, k, width);
             scale_row(a, 1.0 / l[k], width);
         }
+        for (int k = 0; k < r; ++k)  // the other triangle
+            for (int c = 0; c < r - 1 - k; ++c) A[size_t(r - 1 - c) * n + r - 1 - k] = A[size_t(k) * n + c];
     }
 };
 

@@ -16,25 +16,27 @@ CORE_INLINE double sum(Columns x) {
     return ((part[0] + part[4]) + (part[2] + part[6])) + ((part[1] + part[5]) + (part[3] + part[7]));
 }
 
-// target −= Σ_i factors[i] · row i, i < count, over `width` columns (a multiple of COLUMNS).
+template <int BLOCKS>
+CORE_INLINE void subtract_rows_from(double* target, const double* rows, int stride, const double* factors, int count) {
+    Columns total[BLOCKS];
+    for (int b = 0; b < BLOCKS; ++b) total[b] = Columns::load(target + b * COLUMNS);
+    for (int i = 0; i < count; ++i) {
+        const double* row = rows + size_t(i) * stride;
+        Columns f = factors[i];
+        for (int b = 0; b < BLOCKS; ++b) total[b] = total[b] - f * Columns::load(row + b * COLUMNS);
+    }
+    for (int b = 0; b < BLOCKS; ++b) total[b].store(target + b * COLUMNS);
+}
+
+// target −= Σ_i factors[i] · row i, i < count, over `width` columns (a multiple of COLUMNS).  Several blocks of
+// columns go together, as each alone would wait for its own sum.
 inline void subtract_rows(double* target, const double* rows, int stride, const double* factors, int count, int width) {
     int j = 0;
-    for (; j + 4 * COLUMNS <= width; j += 4 * COLUMNS) {
-        Columns a = Columns::load(target + j), b = Columns::load(target + j + COLUMNS);
-        Columns c = Columns::load(target + j + 2 * COLUMNS), d = Columns::load(target + j + 3 * COLUMNS);
-        for (int i = 0; i < count; ++i) {
-            const double* row = rows + size_t(i) * stride + j;
-            Columns f = factors[i];
-            a = a - f * Columns::load(row), b = b - f * Columns::load(row + COLUMNS);
-            c = c - f * Columns::load(row + 2 * COLUMNS), d = d - f * Columns::load(row + 3 * COLUMNS);
-        }
-        a.store(target + j), b.store(target + j + COLUMNS);
-        c.store(target + j + 2 * COLUMNS), d.store(target + j + 3 * COLUMNS);
-    }
-    for (; j < width; j += COLUMNS) {
-        Columns a = Columns::load(target + j);
-        for (int i = 0; i < count; ++i) a = a - Columns(factors[i]) * Columns::load(rows + size_t(i) * stride + j);
-        a.store(target + j);
+    for (; j + 4 * COLUMNS <= width; j += 4 * COLUMNS) subtract_rows_from<4>(target + j, rows + j, stride, factors, count);
+    switch ((width - j) / COLUMNS) {
+        case 3: return subtract_rows_from<3>(target + j, rows + j, stride, factors, count);
+        case 2: return subtract_rows_from<2>(target + j, rows + j, stride, factors, count);
+        case 1: return subtract_rows_from<1>(target + j, rows + j, stride, factors, count);
     }
 }
 

@@ -25,61 +25,74 @@ struct Tridiagonal {
     }
 };
 
+namespace detail {
+
+// Subtract v pᵀ + p vᵀ from the first m rows of A and multiply these by `next`, in one pass.
+template <int BLOCKS>
+CORE_INLINE void update_and_multiply(double* A, std::ptrdiff_t stride, int m, int first, const double* v, const double* p,
+                                     const double* next, double* product) {
+    Columns vc[BLOCKS], pc[BLOCKS], total[BLOCKS];
+    for (int b = 0; b < BLOCKS; ++b) {
+        vc[b] = Columns::load(v + first + b * COLUMNS), pc[b] = Columns::load(p + first + b * COLUMNS);
+        total[b] = 0.0;
+    }
+    for (int i = 0; i < m; ++i) {
+        double* row = A + i * stride + first;
+        Columns vi = v[i], pi = p[i], ni = next[i];
+        for (int b = 0; b < BLOCKS; ++b) {
+            Columns entry = Columns::load(row + b * COLUMNS) - vi * pc[b] - pi * vc[b];
+            entry.store(row + b * COLUMNS);
+            total[b] = total[b] + entry * ni;
+        }
+    }
+    for (int b = 0; b < BLOCKS; ++b) total[b].store(product + first + b * COLUMNS);
+}
+
+inline double dot(const double* a, const double* b, int width) {
+    Columns total = 0.0;
+    for (int j = 0; j < width; j += COLUMNS) total = total + Columns::load(a + j) * Columns::load(b + j);
+    return sum(total);
+}
+
+}  // namespace detail
+
 // Tridiagonalise the pencil's A, destroyed, into lane `set` of T.
 inline void tridiagonalise(Pencil& pencil, Tridiagonal& T, int set) {
-    // Entry m here is entry k = r − 1 − m of the pencil, so that active rows start at column 0.
-    static const std::array<double, 16> MASKS = {1, 1, 1, 1, 1, 1, 1, 1};  // then zeros
+    // Entry m here is entry k = r − 1 − m of the pencil, so that active rows and columns start at 0.
     int r = pencil.rank, n = pencil.n, width = padded(r);
-    auto row_of = [&](int m) { return &pencil.A[size_t(r - 1 - m) * n]; };
+    double* A = &pencil.A[size_t(r - 1) * n];
     auto seen = [&](int m) { return &pencil.rows[8 * (r - 1 - m)]; };
     std::vector<double> v(width), p(width), next(width), product(width);
     for (int m = r - 1; m >= 0; --m) {
-        double* row = row_of(m);
-        for (int c = 0; c <= m; ++c) row[c] -= v[m] * p[c] + p[m] * v[c];
-        int k = r - 1 - m;
+        int k = r - 1 - m, active = padded(m);
+        double* row = A - std::ptrdiff_t(m) * n;
+        for (int j = 0; j < padded(m + 1); j += COLUMNS) {
+            Columns entry = Columns::load(row + j) - v[m] * Columns::load(&p[j]) - p[m] * Columns::load(&v[j]);
+            entry.store(row + j);
+        }
         T.diagonal[k].set(set, row[m]);
         if (m == 0) break;
-        double head = row[m - 1], tail = 0.0;
-        for (int c = 0; c < m - 1; ++c) tail += row[c] * row[c];
-        double norm = std::sqrt(tail + head * head);
+        double head = row[m - 1];
+        for (int c = 0; c < width; ++c) next[c] = c < m - 1 ? row[c] : 0.0;
+        double tail = detail::dot(next.data(), next.data(), active), norm = std::sqrt(tail + head * head);
         double alpha = !(tail > 0) ? head : head > 0 ? -norm : norm;
         double beta = tail > 0 ? 1.0 / (norm * (norm + std::abs(head))) : 0.0;
         T.off[k].set(set, alpha);
-        for (int c = 0; c < width; ++c) next[c] = c < m - 1 ? row[c] : 0.0, product[c] = 0.0;
         next[m - 1] = head - alpha;
-        for (int i = 0; i < m; ++i) {  // subtract v pᵀ + p vᵀ and multiply by `next`, in one pass
-            double* a = row_of(i);
-            double diagonal = a[i] - (v[i] * p[i] + p[i] * v[i]);
-            Columns vi = v[i], pi = p[i], ni = next[i], total = 0.0;
-            int c = 0;
-            for (; c + COLUMNS <= i; c += COLUMNS) {
-                Columns entry = Columns::load(a + c) - vi * Columns::load(&p[c]) - pi * Columns::load(&v[c]);
-                entry.store(a + c);
-                total = total + entry * Columns::load(&next[c]);
-                (Columns::load(&product[c]) + entry * ni).store(&product[c]);
-            }
-            if (c < i) {
-                Columns mask = Columns::load(MASKS.data() + 8 - (i - c));
-                Columns entry = Columns::load(a + c) - vi * Columns::load(&p[c]) - pi * Columns::load(&v[c]);
-                entry = mask * entry;
-                entry.store(a + c);
-                total = total + entry * Columns::load(&next[c]);
-                (Columns::load(&product[c]) + entry * ni).store(&product[c]);
-            }
-            a[i] = diagonal;
-            product[i] += sum(total) + diagonal * next[i];
-        }
-        double overlap = 0.0;
-        for (int c = 0; c < m; ++c) product[c] *= beta, overlap += product[c] * next[c];
-        overlap *= 0.5 * beta;
-        Columns along = 0.0;
+        int j = 0;
+        for (; j + 2 * COLUMNS <= active; j += 2 * COLUMNS)
+            detail::update_and_multiply<2>(A, -std::ptrdiff_t(n), m, j, v.data(), p.data(), next.data(), product.data());
+        if (j < active) detail::update_and_multiply<1>(A, -std::ptrdiff_t(n), m, j, v.data(), p.data(), next.data(), product.data());
+        for (int c = m; c < active; ++c) product[c] = 0.0;
+        double overlap = 0.5 * beta * beta * detail::dot(product.data(), next.data(), active);
+        Columns even = 0.0, odd = 0.0;
         for (int c = 0; c < m; ++c) {
             v[c] = next[c];
-            p[c] = product[c] - overlap * next[c];
-            along = along + next[c] * Columns::load(seen(c));
+            p[c] = beta * product[c] - overlap * next[c];
+            (c % 2 == 0 ? even : odd) += next[c] * Columns::load(seen(c));
         }
         v[m] = p[m] = 0.0;
-        along = beta * along;
+        Columns along = beta * (even + odd);
         for (int c = 0; c < m; ++c) (Columns::load(seen(c)) - next[c] * along).store(seen(c));
     }
     for (int k = 0; k < r; ++k)

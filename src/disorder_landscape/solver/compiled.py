@@ -170,6 +170,9 @@ def thermal_conductance(
     error, energies : array, shape (wire, mu, B)
     """
     limit = core.TOLERANCE if tolerance is None else tolerance
-    arguments = mu, B, bias, BOLTZMANN * temperature, limit, growth_limit
-    G, error, energies = core.thermal_conductance(*handed_over(wires), *arguments)
+    V, parameters = handed_over(wires)
+    kT = BOLTZMANN * temperature
+    G, error, energies = core.thermal_conductance(
+        V, parameters, mu, B, bias, kT, limit, growth_limit
+    )
     return G, error, energies.astype(np.int64)
