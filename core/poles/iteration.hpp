@@ -154,16 +154,17 @@ inline double isolation(const std::vector<Pole>& poles, size_t p) {
 // Iterate the active poles in place.  The norm of a pole that does not converge is NaN.
 inline void iterate(std::vector<Pole>& poles, std::vector<int> active, const Leads& leads, Batch& batch) {
     for (int round = 0; round < ROUNDS && !active.empty(); ++round) {
-        std::vector<int> left;
+        std::vector<double> off;
         for (size_t first = 0; first < active.size(); first += POLES) {
             size_t some = std::min(size_t(POLES), active.size() - first);
             for (size_t l = 0; l < POLES; ++l) batch.load(int(l), poles[active[first + std::min(l, some - 1)]]);
             for (int step = 0; step < STEPS; ++step) batch.step(leads);
-            for (size_t l = 0; l < some; ++l) {
-                int p = active[first + l];
-                double off = batch.take(int(l), poles[p]);
-                if (!(off <= CONVERGED * (FAINT + std::min(-poles[p].z.imag(), isolation(poles, p))))) left.push_back(p);
-            }
+            for (size_t l = 0; l < some; ++l) off.push_back(batch.take(int(l), poles[active[first + l]]));
+        }
+        std::vector<int> left;  // once all have moved, so that batches of any size end alike
+        for (size_t k = 0; k < active.size(); ++k) {
+            int p = active[k];
+            if (!(off[k] <= CONVERGED * (FAINT + std::min(-poles[p].z.imag(), isolation(poles, p))))) left.push_back(p);
         }
         active = left;
     }

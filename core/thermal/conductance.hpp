@@ -6,6 +6,7 @@
 #pragma once
 
 #include "../conductance.hpp"
+#include "../poles/isolated.hpp"
 #include "average.hpp"
 
 namespace core {
@@ -99,13 +100,8 @@ inline void solve_nodes(const ThermalField& field, const EnergyPlan& plan, const
         auto ends = eliminate_inner_sites(view(field.wire), terms);
         Ends<SlopeReal> G = attach_leads(ends, leads);
         auto bare = lossless_conductances_of_ends(G, leads);
-        Symmetric8<Dual<SlopeReal>> isolated;
-        for (int i = 0; i < 4; ++i) {
-            for (int j = i; j < 4; ++j) isolated(i, j) = ends.E(i, j), isolated(4 + i, 4 + j) = ends.D(i, j);
-            for (int j = 0; j < 4; ++j) isolated(i, 4 + j) = ends.C(i, j);
-        }
-        invert(isolated);
-        to_chiral(isolated);
+        Symmetric8<SlopeReal> isolated, slope;
+        isolated_ends(ends, isolated, slope);
         for (int l = 0; l < SLOPE_LANES && piece + l < total; ++l) {
             SetData& of = data[(piece + l) / nodes];
             int e = (piece + l) % nodes;
@@ -113,8 +109,8 @@ inline void solve_nodes(const ThermalField& field, const EnergyPlan& plan, const
             of.bare[e] = lane_of(bare, l);
             for (int i = 0; i < 8; ++i)
                 for (int j = 0; j < 8; ++j) {
-                    of.isolated[e].G[i][j] = isolated(i, j).value[l] / field.hop;
-                    of.isolated[e].slope[i][j] = isolated(i, j).slope[l] / field.hop;
+                    of.isolated[e].G[i][j] = isolated(i, j)[l] / field.hop;
+                    of.isolated[e].slope[i][j] = slope(i, j)[l] / field.hop;
                 }
         }
     }
