@@ -31,10 +31,7 @@ struct LaneLeads {
     CORE_INLINE R gamma(int c, int i, int j) const { return -2.0 * of[c][i + j].im; }
 };
 
-template <class R> CORE_INLINE R real_part(R x) { return x; }
-template <class R> CORE_INLINE R real_part(Dual<R> x) { return x.value; }
 template <class R> CORE_INLINE Complex<R> to_complex(R x) { return {x, R(0.0)}; }
-template <class R> CORE_INLINE Complex<R> to_complex(Dual<R> x) { return {x.value, R(0.0)}; }
 template <class R> CORE_INLINE Complex<R> to_complex(Complex<R> x) { return x; }
 
 // M' as one matrix, left end first.

@@ -5,7 +5,7 @@
 // inverse keep all digits.  Each lane exchanges its own rows.
 #pragma once
 
-#include "../wire/elimination.hpp"
+#include "../wire/slopes.hpp"
 #include "chiral.hpp"
 
 namespace core {
@@ -40,13 +40,18 @@ inline Symmetric8<R> pivoted_inverse(const Symmetric8<R>& M) {
 }
 
 template <class R>
-inline void isolated_ends(const EndBlocks<Dual<R>>& s, Symmetric8<R>& G, Symmetric8<R>& slope) {
-    Symmetric8<R> M, dM;
-    auto set = [&](int i, int j, const Dual<R>& entry) { M(i, j) = entry.value, dM(i, j) = entry.slope; };
+inline Symmetric8<R> both_ends(const Symmetric4<R>& E, const Block4<R>& C, const Symmetric4<R>& D) {
+    Symmetric8<R> M;
     for (int i = 0; i < 4; ++i) {
-        for (int j = i; j < 4; ++j) set(i, j, s.E(i, j)), set(4 + i, 4 + j, s.D(i, j));
-        for (int j = 0; j < 4; ++j) set(i, 4 + j, s.C(i, j));
+        for (int j = i; j < 4; ++j) M(i, j) = E(i, j), M(4 + i, 4 + j) = D(i, j);
+        for (int j = 0; j < 4; ++j) M(i, 4 + j) = C(i, j);
     }
+    return M;
+}
+
+template <class R>
+inline void isolated_ends(const EndBlocks<R>& s, const EndSlopes<R>& d, Symmetric8<R>& G, Symmetric8<R>& slope) {
+    const Symmetric8<R> M = both_ends(s.E, s.C, s.D), dM = both_ends(d.E, d.C, d.D);
     G = pivoted_inverse(M);
     for (int i = 0; i < 8; ++i) {
         R row[8];  // of G dM

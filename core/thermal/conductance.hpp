@@ -86,22 +86,23 @@ inline void solve_nodes(const ThermalField& field, const EnergyPlan& plan, const
                         SetData* data) {
     int nodes = plan.nodes, total = count * nodes;
     for (int piece = 0; piece < total; piece += SLOPE_LANES) {
-        Terms<Dual<SlopeReal>> terms{};
+        Terms<SlopeReal> terms{};
         LaneLeads<SlopeReal> leads{};
-        terms.kinetic.slope = 0.0;
+        SlopeReal normal_slope{}, anomalous_slope{};
         for (int l = 0; l < SLOPE_LANES; ++l) {
             int pair = std::min(piece + l, total - 1), e = pair % nodes;
             const Pairing& p = field.pairing[e];
-            terms.kinetic.value.set(l, field.kinetic(mu[sets[pair / nodes].mu]));
-            terms.normal.value.set(l, p.normal / field.hop), terms.normal.slope.set(l, p.normal_slope / field.hop);
-            terms.anomalous.value.set(l, p.anomalous / field.hop), terms.anomalous.slope.set(l, p.anomalous_slope / field.hop);
+            terms.kinetic.set(l, field.kinetic(mu[sets[pair / nodes].mu]));
+            terms.normal.set(l, p.normal / field.hop), normal_slope.set(l, p.normal_slope / field.hop);
+            terms.anomalous.set(l, p.anomalous / field.hop), anomalous_slope.set(l, p.anomalous_slope / field.hop);
             leads.set(l, field.leads[e]);
         }
-        auto ends = eliminate_inner_sites(view(field.wire), terms);
+        EndSlopes<SlopeReal> slopes;
+        auto ends = eliminate_inner_sites_with_slopes(view(field.wire), terms, normal_slope, anomalous_slope, slopes);
         Ends<SlopeReal> G = attach_leads(ends, leads);
         auto bare = lossless_conductances_of_ends(G, leads);
         Symmetric8<SlopeReal> isolated, slope;
-        isolated_ends(ends, isolated, slope);
+        isolated_ends(ends, slopes, isolated, slope);
         for (int l = 0; l < SLOPE_LANES && piece + l < total; ++l) {
             SetData& of = data[(piece + l) / nodes];
             int e = (piece + l) % nodes;

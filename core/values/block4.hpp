@@ -4,7 +4,7 @@
 // have constant bounds and are unrolled, so that entries live in registers.
 #pragma once
 
-#include "dual.hpp"
+#include "complex.hpp"
 
 namespace core {
 

@@ -59,6 +59,5 @@ template <class R> CORE_INLINE Complex<R> inverse(Complex<R> a) {
 
 // |re| + |im|, which is between |a| and √2 |a|.
 template <class R> CORE_INLINE R size(Complex<R> a) { return size(a.re) + size(a.im); }
-template <class R> CORE_INLINE Complex<R> value_of(Complex<R> a) { return a; }
 
 }  // namespace core

@@ -150,6 +150,5 @@ template <int W> CORE_INLINE Lanes<W> larger(Lanes<W> a, Lanes<W> b) {
     return where_greater(b, a, b, a);
 }
 
-template <int W> CORE_INLINE Lanes<W> value_of(Lanes<W> a) { return a; }
 
 }  // namespace core

@@ -8,7 +8,7 @@
 // onsite blocks of M.  A rotation of the spin from site to site, U_n = exp(−iσyφn), tan φ = α/2at,
 // has made the hopping −t'τz with t' = √(t² + (α/2a)²), so that it costs signs only; it turns the
 // Zeeman term into V_Z(σx cos 2φn + σz sin 2φn).  In this frame M is symmetric at θ = 0: real below
-// the gap of the parent superconductor (Lanes, or with the derivative by ω Dual<Lanes>), complex
+// the gap of the parent superconductor (Lanes), complex
 // above it or where levels are broadened (Complex<Lanes>).
 //
 // Rounding: D is factored, never inverted for E and C.  If a level of the eliminated piece lies at
@@ -78,8 +78,9 @@ CORE_INLINE Symmetric4<N> minus_hopped(const Symmetric4<N>& A, const Symmetric4<
     return D;
 }
 
+// Eliminate the site of block D, before the site of onsite block `next`; return X = D⁻¹.
 template <class N>
-CORE_INLINE void eliminate_site(EndBlocks<N>& s, const Symmetric4<N>& next) {
+CORE_INLINE Symmetric4<N> eliminate_site(EndBlocks<N>& s, const Symmetric4<N>& next) {
     Factors4<N> f = factor(s.D);
 #pragma GCC unroll 4
     for (int i = 0; i < 4; ++i) s.growth = larger(s.growth, size(f.over[i]));
@@ -98,7 +99,9 @@ CORE_INLINE void eliminate_site(EndBlocks<N>& s, const Symmetric4<N>& next) {
         solve_upper(f, U);
         s.C(i, 0) = -U[0], s.C(i, 1) = -U[1], s.C(i, 2) = U[2], s.C(i, 3) = U[3];
     }
-    s.D = minus_hopped(next, inverse(f));
+    Symmetric4<N> X = inverse(f);
+    s.D = minus_hopped(next, X);
+    return X;
 }
 
 template <class N>
@@ -109,22 +112,33 @@ CORE_INLINE auto largest_coupling(const Block4<N>& C) {
 }
 
 template <class N>
-inline EndBlocks<N> eliminate_inner_sites(const WireView& wire, const Terms<N>& of) {
+CORE_INLINE EndBlocks<N> first_two_sites(const WireView& wire, const Terms<N>& of) {
     EndBlocks<N> s;
     s.E = onsite(of, wire.V[0], wire.zeeman_x[0], wire.zeeman_z[0]);
     s.D = onsite(of, wire.V[1], wire.zeeman_x[1], wire.zeeman_z[1]);
     for (int i = 0; i < 4; ++i)
         for (int j = 0; j < 4; ++j) s.C(i, j) = i != j ? 0.0 : i < 2 ? 1.0 : -1.0;  // τz
     s.growth = 0.0;
+    return s;
+}
+
+// Take a look at C now and then, see LOOK_EVERY.
+template <class N>
+CORE_INLINE void look_at_coupling(EndBlocks<N>& s, int n, int sites, decltype(size(N()))& before) {
+    if (n % LOOK_EVERY != 0 && n != sites - 1) return;
+    auto now = largest_coupling(s.C);
+    decltype(now) product = before * now;
+    s.growth = larger(s.growth, product);
+    before = now;
+}
+
+template <class N>
+inline EndBlocks<N> eliminate_inner_sites(const WireView& wire, const Terms<N>& of) {
+    EndBlocks<N> s = first_two_sites(wire, of);
     decltype(s.growth) before = 1.0;
     for (int n = 2; n < wire.sites; ++n) {
         eliminate_site(s, onsite(of, wire.V[n], wire.zeeman_x[n], wire.zeeman_z[n]));
-        if (n % LOOK_EVERY == 0 || n == wire.sites - 1) {
-            auto now = largest_coupling(s.C);
-            decltype(now) product = before * now;
-            s.growth = larger(s.growth, product);
-            before = now;
-        }
+        look_at_coupling(s, n, wire.sites, before);
     }
     return s;
 }

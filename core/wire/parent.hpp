@@ -1,7 +1,7 @@
 // The parent superconductor's self-energy, Σ(ω) = −γ(ω + Δ₀τx)/√(Δ₀²−ω²) (below Eq. S1).
 #pragma once
 
-#include "../values/dual.hpp"
+#include "../values/complex.hpp"
 #include "wire.hpp"
 
 namespace core {
