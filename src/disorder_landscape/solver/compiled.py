@@ -12,6 +12,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from disorder_landscape.arguments import require
 from disorder_landscape.physics.parameters import FloatArray, Nanowire
@@ -81,7 +82,7 @@ pivoting is trusted: see core/wire/elimination.hpp."""
 
 
 def _handed_over(wires: Sequence[Nanowire]) -> tuple[FloatArray, FloatArray]:
-    """Return the wires' V with barriers, (wire, site), and parameters in the order of core's Wire."""
+    """Return the wires' V with barriers, (wire, site), and parameters, ordered as core's Wire."""
     V = np.array([w.potential_with_barriers for w in wires])
     parameters = [
         (
@@ -138,3 +139,46 @@ def reflection_determinant(
         *_handed_over(wires), mu, B, np.zeros(1), growth_limit
     )
     return T
+
+
+def conductance_gradient(
+    wire: Nanowire,
+    mu: FloatArray,
+    B: FloatArray,
+    omega: FloatArray,
+    biases: NDArray[np.int64],
+    lead_slopes: NDArray[np.complex128],
+    growth_limit: float = GROWTH_LIMIT,
+) -> tuple[FloatArray, FloatArray]:
+    """Return the derivatives of the T = 0 conductances below the gap, without dissipation.
+
+    Parameters
+    ----------
+    wire : Nanowire
+    mu, B, omega : array
+        0 ≤ ω < Δ₀.
+    biases : array, shape (omega, 2)
+        Which bias +ω and −ω are, −1 if none.
+    lead_slopes : array, shape (B, omega, 2, lead, charge, 2, 2)
+        What `lead_slopes.rotated_lead_slopes` returns.
+    growth_limit : float
+
+    Returns
+    -------
+    array, shape (4, mu, B, bias, site)
+        Of G_LL, G_RR, G_LR, G_RL with respect to every site's V, in e²/h per meV.
+    array, shape (4, 3, mu, B, bias)
+        With respect to μ, B and α, in e²/h per meV, T and meV nm.
+    """
+    by_V, others = core.conductance_gradient(
+        *_handed_over([wire]),
+        mu,
+        B,
+        omega,
+        biases,
+        biases.max() + 1,
+        lead_slopes,
+        1 / (2 * wire.lattice),
+        growth_limit,
+    )
+    return by_V, others
