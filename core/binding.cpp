@@ -4,6 +4,7 @@
 // Arrays come from solver/compiled.py, which checks them; here only their shapes are trusted.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -12,6 +13,7 @@
 #include <mutex>
 
 #include "conductance.hpp"
+#include "derivatives/gradient.hpp"
 #include "processor.hpp"
 #include "thermal/conductance.hpp"
 
@@ -26,6 +28,8 @@ using namespace core;
 
 using Vector = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Matrix = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+using Biases = nb::ndarray<const std::int64_t, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
+using LeadSlopesArray = nb::ndarray<const Amplitude, nb::shape<-1, -1, 2, 2, 2, 2, 2>, nb::c_contig, nb::device::cpu>;
 using Array = nb::ndarray<nb::numpy, double, nb::c_contig, nb::device::cpu>;
 
 Array new_array(std::vector<size_t> shape) {
@@ -118,6 +122,21 @@ nb::tuple thermal(Matrix V, Matrix parameters, Vector mu, Vector B, Vector bias,
     return nb::make_tuple(G, error, energies);
 }
 
+// Of the one wire that there is; slopes are as LeadSelfEnergy, (B, omega, 2) of them.
+std::pair<Array, Array> conductance_gradient(Matrix V, Matrix parameters, Vector mu, Vector B, Vector omega, Biases biases,
+                                             size_t bias_count, LeadSlopesArray slopes, double spin_orbit_slope,
+                                             double growth_limit) {
+    Wire wire = wires_of(V, parameters).front();
+    std::vector<LeadSelfEnergy> of_leads(slopes.size() / 16);
+    for (size_t k = 0; k < slopes.size(); ++k) of_leads[k / 16].of[k / 4 % 4](int(k / 2 % 2), int(k % 2)) = slopes.data()[k];
+    GradientGrid grid{wire,          mu.data(),         B.data(),        omega.data(),    int(mu.size()),  int(B.size()),
+                      int(omega.size()), int(bias_count), biases.data(), of_leads.data(), spin_orbit_slope};
+    Array by_V = new_array({4, mu.size(), B.size(), bias_count, V.shape(1)});
+    Array others = new_array({4, 3, mu.size(), B.size(), bias_count});
+    run([&](Stop& stop) { gradient(grid, growth_limit, by_V.data(), others.data(), stop); });
+    return {by_V, others};
+}
+
 }  // namespace
 
 NB_MODULE(CORE_MODULE, m) {
@@ -137,4 +156,7 @@ NB_MODULE(CORE_MODULE, m) {
           nb::arg("bias"), nb::arg("kT"), nb::arg("tolerance"), nb::arg("growth_limit"));
     m.def("reflection_determinant", &determinant_at_zero, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"),
           nb::arg("B"), nb::arg("omega"), nb::arg("growth_limit"));
+    m.def("conductance_gradient", &conductance_gradient, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"), nb::arg("B"),
+          nb::arg("omega"), nb::arg("biases"), nb::arg("bias_count"), nb::arg("slopes"), nb::arg("spin_orbit_slope"),
+          nb::arg("growth_limit"));
 }

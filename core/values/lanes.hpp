@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <utility>
 
 #include "product.hpp"
 
@@ -81,7 +82,30 @@ CORE_INLINE Register size(Register a) {
     return (Register)((Mask)a & (Mask{} + ALL_BUT_SIGN));
 }
 
+// Of lanes whose number has the bit SPAN, take b's a bit lower into a, of the others a's into b.
+template <int SPAN, int... lane>
+CORE_INLINE void exchange(Register& a, Register& b, std::integer_sequence<int, lane...>) {
+    Register x = a;
+#if defined(__clang__)
+    a = __builtin_shufflevector(x, b, (lane & SPAN ? lane - SPAN + REGISTER : lane)...);
+    b = __builtin_shufflevector(x, b, (lane & SPAN ? lane + REGISTER : lane + SPAN)...);
+#else
+    a = __builtin_shuffle(x, b, Mask{(lane & SPAN ? lane - SPAN + REGISTER : lane)...});
+    b = __builtin_shuffle(x, b, Mask{(lane & SPAN ? lane + REGISTER : lane + SPAN)...});
+#endif
+}
+
 }  // namespace hardware
+
+// Exchange rows and lanes: row i then holds lane i of each.
+template <int SPAN = 1>
+CORE_INLINE void transpose(Register (&rows)[REGISTER]) {
+#pragma GCC unroll 8
+    for (int i = 0; i < REGISTER; ++i)
+        if ((i & SPAN) == 0)
+            hardware::exchange<SPAN>(rows[i], rows[i + SPAN], std::make_integer_sequence<int, REGISTER>());
+    if constexpr (2 * SPAN < REGISTER) transpose<2 * SPAN>(rows);
+}
 
 template <int W>
 struct Lanes {

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from disorder_landscape.physics.hamiltonian import PAULI, ComplexArray
+from disorder_landscape.physics.leads import lead_self_energies
 from disorder_landscape.physics.parameters import FloatArray, Nanowire
 
 
@@ -50,4 +51,31 @@ def lead_slopes(
         solved = np.linalg.solve(np.eye(4) - kron, sources).swapaxes(2, 3)
         slopes[:, :, :, 1, charge] = solved.reshape(*shape, 2, 2, 2)
         slopes[:, :, :, 0, charge] = slopes[:, :, :, 1, charge, ::-1, ::-1]  # σx Σ σx, the mirror
+    return slopes
+
+
+def rotated_lead_slopes(wire: Nanowire, B: FloatArray, omega: FloatArray) -> ComplexArray:
+    """Return the derivatives of Σ/t' in the wire's rotated frame (core/wire/elimination.hpp).
+
+    There the right lead's spin is turned by φ(N − 1), tan φ = s/t, s = α/2a, and α changes the turn
+    and t' = √(t² + s²), too.
+
+    Returns
+    -------
+    array, shape (B, omega, 2, lead, charge, 2, 2)
+        With respect to B and α, in 1/T and 1/(meV nm).
+    """
+    t, s, ds = wire.hopping, wire.spin_orbit_hopping, 1 / (2 * wire.lattice)
+    hop, end = np.hypot(t, s), wire.sites - 1
+    sigma = np.array([lead_self_energies(wire, field, omega) for field in B])
+    slopes = lead_slopes(wire, B, omega, sigma)
+    i_sigma_y = np.array([[0.0, 1.0], [-1.0, 0.0]])
+    turn = np.arctan2(s, t) * end
+    U = np.cos(turn) * np.eye(2) - np.sin(turn) * i_sigma_y
+    sigma[:, :, 1] = U.T @ sigma[:, :, 1] @ U
+    slopes[:, :, :, 1] = U.T @ slopes[:, :, :, 1] @ U
+    turned = i_sigma_y @ sigma[:, :, 1] - sigma[:, :, 1] @ i_sigma_y
+    slopes[:, :, 1, 1] += t * ds / hop**2 * end * turned
+    slopes[:, :, 1] -= s * ds / hop**2 * sigma
+    slopes /= hop
     return slopes

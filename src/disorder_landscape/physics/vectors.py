@@ -11,14 +11,10 @@ from __future__ import annotations
 import operator
 from typing import Any, ClassVar, TypeAlias
 
-import numba as nb
-import numpy as np
 from llvmlite import ir
 from numba.core import cgutils, types
 from numba.core.typing.templates import ConcreteTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, models, register_model
-
-from disorder_landscape.physics.parameters import FloatArray
 
 WIDTH = 8
 """Lanes of a vector."""
@@ -50,33 +46,6 @@ def _place(context: Any, builder: Any, kind: Any, array: Any, first: Any) -> Any
     return builder.bitcast(builder.gep(data, [first]), _llvm.as_pointer())
 
 
-def _pointer(context: Any, builder: Any, kind: Any, array: Any, index: Any) -> Any:
-    first = builder.mul(index, ir.Constant(index.type, WIDTH))
-    return _place(context, builder, kind, array, first)
-
-
-@intrinsic
-def load(typing: Any, array: Any, index: Any) -> Any:
-    """Return the vector that starts at array[WIDTH · index]; the array is contiguous."""
-
-    def generate(context: Any, builder: Any, of: Any, values: Any) -> Any:
-        return builder.load(_pointer(context, builder, of.args[0], *values), align=8 * WIDTH)
-
-    return vector(array, types.intp), generate
-
-
-@intrinsic
-def store(typing: Any, array: Any, index: Any, value: Any) -> Any:
-    """Write a vector to array[WIDTH · index] and what follows."""
-
-    def generate(context: Any, builder: Any, of: Any, values: Any) -> Any:
-        at = _pointer(context, builder, of.args[0], *values[:2])
-        builder.store(values[2], at, align=8 * WIDTH)
-        return context.get_dummy_value()
-
-    return types.void(array, types.intp, vector), generate
-
-
 @intrinsic
 def write(typing: Any, array: Any, first: Any, value: Any) -> Any:
     """Write a vector to array[first] and what follows, wherever in the cache that is."""
@@ -96,28 +65,6 @@ def read(typing: Any, array: Any, first: Any) -> Any:
         return builder.load(_place(context, builder, of.args[0], *values), align=8)
 
     return vector(array, types.intp), generate
-
-
-@intrinsic
-def transposed(typing: Any, rows: Any) -> Any:
-    """Return the WIDTH vectors of which number i holds lane i of the given WIDTH vectors."""
-
-    def generate(context: Any, builder: Any, of: Any, values: Any) -> Any:
-        some, span = [builder.extract_value(values[0], i) for i in range(WIDTH)], 1
-        while span < WIDTH:  # exchange what is off the diagonal in blocks of twice the span
-            for i in range(WIDTH):
-                if i & span == 0:
-                    a, b = some[i], some[i + span]
-                    lanes = [[l if l & span == 0 else l - span + WIDTH for l in range(WIDTH)]]
-                    lanes += [[l + span if l & span == 0 else l + WIDTH for l in range(WIDTH)]]
-                    kind = ir.VectorType(ir.IntType(32), WIDTH)
-                    some[i], some[i + span] = (
-                        builder.shuffle_vector(a, b, ir.Constant(kind, of)) for of in lanes
-                    )
-            span *= 2
-        return context.make_tuple(builder, of.return_type, some)
-
-    return rows(rows), generate
 
 
 def _apply(builder: Any, name: str, values: Any) -> Any:
@@ -200,18 +147,3 @@ class _Negation(ConcreteTemplate):  # type: ignore[misc]
 @lower_builtin(operator.neg, vector)
 def _negate(context: Any, builder: Any, of: Any, values: Any) -> Any:
     return builder.fneg(values[0])
-
-
-@nb.njit(cache=True)
-def larger(a: Vector, b: Vector) -> Vector:  # pragma: no cover
-    """Return the larger of |a| and b in each lane; b where a is no number."""
-    size = sizes(a)
-    return where_greater(size, b, size, b)
-
-
-@nb.njit(cache=True)
-def vectors(count: int) -> FloatArray:  # pragma: no cover
-    """Return room for so many vectors, each within one line of the cache."""
-    room = np.empty((count + 1) * WIDTH)
-    first = -(room.ctypes.data // room.itemsize) % WIDTH
-    return room[first : first + count * WIDTH]

@@ -1,5 +1,8 @@
 """The types of core/binding.cpp, of which every variant is compiled."""
 
+import numpy as np
+from numpy.typing import NDArray
+
 from disorder_landscape.physics.parameters import FloatArray
 
 TOLERANCE: float
@@ -45,3 +48,15 @@ def reflection_determinant(
     omega: FloatArray,
     growth_limit: float,
 ) -> FloatArray: ...
+def conductance_gradient(
+    V: FloatArray,
+    parameters: FloatArray,
+    mu: FloatArray,
+    B: FloatArray,
+    omega: FloatArray,
+    biases: NDArray[np.int64],
+    bias_count: int,
+    slopes: NDArray[np.complex128],
+    spin_orbit_slope: float,
+    growth_limit: float,
+) -> tuple[FloatArray, FloatArray]: ...

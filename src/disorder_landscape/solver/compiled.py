@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "complex_conductance",
+    "conductance_gradient",
     "core",
     "real_conductance",
     "reflection_determinant",
@@ -176,3 +177,46 @@ def thermal_conductance(
         V, parameters, mu, B, bias, kT, limit, growth_limit
     )
     return G, error, energies.astype(np.int64)
+
+
+def conductance_gradient(
+    wire: Nanowire,
+    mu: FloatArray,
+    B: FloatArray,
+    omega: FloatArray,
+    biases: NDArray[np.int64],
+    lead_slopes: NDArray[np.complex128],
+    growth_limit: float = GROWTH_LIMIT,
+) -> tuple[FloatArray, FloatArray]:
+    """Return the derivatives of the T = 0 conductances below the gap, without dissipation.
+
+    Parameters
+    ----------
+    wire : Nanowire
+    mu, B, omega : array
+        0 ≤ ω < Δ₀.
+    biases : array, shape (omega, 2)
+        Which bias +ω and −ω are, −1 if none.
+    lead_slopes : array, shape (B, omega, 2, lead, charge, 2, 2)
+        What `lead_slopes.rotated_lead_slopes` returns.
+    growth_limit : float
+
+    Returns
+    -------
+    array, shape (4, mu, B, bias, site)
+        Of G_LL, G_RR, G_LR, G_RL with respect to every site's V, in e²/h per meV.
+    array, shape (4, 3, mu, B, bias)
+        With respect to μ, B and α, in e²/h per meV, T and meV nm.
+    """
+    by_V, others = core.conductance_gradient(
+        *handed_over([wire]),
+        mu,
+        B,
+        omega,
+        biases,
+        biases.max() + 1,
+        lead_slopes,
+        1 / (2 * wire.lattice),
+        growth_limit,
+    )
+    return by_V, others
