@@ -19,7 +19,9 @@ struct Grid {
     int mu_count, B_count, omega_count;
 };
 
-inline WireView view(const RotatedWire& w) { return {w.sites(), w.V.data(), w.zeeman_x.data(), w.zeeman_z.data()}; }
+inline WireView view(const RotatedWire& w) {
+    return {w.sites(), w.V.data(), w.zeeman_x.data(), w.zeeman_z.data(), w.zeeman_y};
+}
 
 // Number of lanes whose divisions hide each other's latency best.
 constexpr int REAL_LANES = 2 * REGISTER;

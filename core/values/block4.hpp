@@ -1,7 +1,8 @@
-// 4×4 blocks, one site of the wire or the coupling of two, and how a symmetric one is factored.
+// 4×4 blocks, one site of the wire or the coupling of two, and how they are factored.
 //
-// D = LΔLᵀ with unit lower triangular L (Golub and Van Loan, Matrix Computations, 4.1).  All loops
-// have constant bounds and are unrolled, so that entries live in registers.
+// D = LΔRᵀ with unit lower triangular L and R (Golub and Van Loan, Matrix Computations, 3.2 and 4.1);
+// of a symmetric block R is L.  All loops have constant bounds and are unrolled, so that entries live
+// in registers.
 #pragma once
 
 #include "dual.hpp"
@@ -10,6 +11,7 @@ namespace core {
 
 template <class N>
 struct Block4 {
+    static constexpr bool SYMMETRIC = false;
     N entry[4][4];
     CORE_INLINE N& operator()(int i, int j) { return entry[i][j]; }
     CORE_INLINE const N& operator()(int i, int j) const { return entry[i][j]; }
@@ -18,17 +20,34 @@ struct Block4 {
 // Upper triangle, row by row.
 template <class N>
 struct Symmetric4 {
+    static constexpr bool SYMMETRIC = true;
     static constexpr int ROW[4] = {0, 3, 5, 6};  // entry (i, j), i ≤ j, is at ROW[i] + j
     N entry[10];
     CORE_INLINE N& operator()(int i, int j) { return i <= j ? entry[ROW[i] + j] : entry[ROW[j] + i]; }
     CORE_INLINE const N& operator()(int i, int j) const { return i <= j ? entry[ROW[i] + j] : entry[ROW[j] + i]; }
 };
 
-// L and the reciprocals of Δ.
+// Unit lower triangular.
 template <class N>
-struct Factors4 {
+struct Triangle4 {
     N l10, l20, l21, l30, l31, l32;
+};
+
+// L = R and the reciprocals of Δ.
+template <class N>
+struct Factors4 : Triangle4<N> {
     N over[4];
+    CORE_INLINE const Triangle4<N>& left() const { return *this; }
+    CORE_INLINE const Triangle4<N>& right() const { return *this; }
+};
+
+// L, R and the reciprocals of Δ.
+template <class N>
+struct GeneralFactors4 {
+    Triangle4<N> L, R;
+    N over[4];
+    CORE_INLINE const Triangle4<N>& left() const { return L; }
+    CORE_INLINE const Triangle4<N>& right() const { return R; }
 };
 
 template <class N>
@@ -43,6 +62,26 @@ CORE_INLINE Factors4<N> factor(const Symmetric4<N>& D) {
     f.over[2] = inverse(D(2, 2) - f.l20 * D(0, 2) - f.l21 * e2);
     f.l32 = f3 * f.over[2];
     f.over[3] = inverse(D(3, 3) - f.l30 * D(0, 3) - f.l31 * e3 - f.l32 * f3);
+    return f;
+}
+
+template <class N>
+CORE_INLINE GeneralFactors4<N> factor(Block4<N> D) {
+    GeneralFactors4<N> f;
+#pragma GCC unroll 4
+    for (int k = 0; k < 4; ++k) {
+        f.over[k] = inverse(D(k, k));
+#pragma GCC unroll 4
+        for (int i = k + 1; i < 4; ++i) {
+            D(i, k) = D(i, k) * f.over[k];
+#pragma GCC unroll 4
+            for (int j = k + 1; j < 4; ++j) D(i, j) = D(i, j) - D(i, k) * D(k, j);
+        }
+#pragma GCC unroll 4
+        for (int j = k + 1; j < 4; ++j) D(k, j) = D(k, j) * f.over[k];
+    }
+    f.L = {D(1, 0), D(2, 0), D(2, 1), D(3, 0), D(3, 1), D(3, 2)};
+    f.R = {D(0, 1), D(0, 2), D(1, 2), D(0, 3), D(1, 3), D(2, 3)};
     return f;
 }
 
@@ -64,18 +103,33 @@ CORE_INLINE Symmetric4<N> inverse(const Factors4<N>& f) {
 
 // x ← x L⁻ᵀ for a row x.
 template <class N>
-CORE_INLINE void solve_lower(const Factors4<N>& f, N (&x)[4]) {
-    x[1] = x[1] - f.l10 * x[0];
-    x[2] = x[2] - f.l20 * x[0] - f.l21 * x[1];
-    x[3] = x[3] - f.l30 * x[0] - f.l31 * x[1] - f.l32 * x[2];
+CORE_INLINE void solve_lower(const Triangle4<N>& L, N (&x)[4]) {
+    x[1] = x[1] - L.l10 * x[0];
+    x[2] = x[2] - L.l20 * x[0] - L.l21 * x[1];
+    x[3] = x[3] - L.l30 * x[0] - L.l31 * x[1] - L.l32 * x[2];
 }
 
 // x ← x L⁻¹ for a row x.
 template <class N>
-CORE_INLINE void solve_upper(const Factors4<N>& f, N (&x)[4]) {
-    x[2] = x[2] - x[3] * f.l32;
-    x[1] = x[1] - x[2] * f.l21 - x[3] * f.l31;
-    x[0] = x[0] - x[1] * f.l10 - x[2] * f.l20 - x[3] * f.l30;
+CORE_INLINE void solve_upper(const Triangle4<N>& L, N (&x)[4]) {
+    x[2] = x[2] - x[3] * L.l32;
+    x[1] = x[1] - x[2] * L.l21 - x[3] * L.l31;
+    x[0] = x[0] - x[1] * L.l10 - x[2] * L.l20 - x[3] * L.l30;
+}
+
+// R⁻ᵀΔ⁻¹L⁻¹, the same of a general one.
+template <class N>
+CORE_INLINE Block4<N> inverse(const GeneralFactors4<N>& f) {
+    const auto& [r10, r20, r21, r30, r31, r32] = f.R;
+    N m20 = r21 * r10 - r20, m31 = r32 * r21 - r31, m30 = r31 * r10 - r30 - r32 * m20;
+    const N* over = f.over;
+    Block4<N> X{{{over[0], -(r10 * over[1]), m20 * over[2], m30 * over[3]},
+                 {0.0, over[1], -(r21 * over[2]), m31 * over[3]},
+                 {0.0, 0.0, over[2], -(r32 * over[3])},
+                 {0.0, 0.0, 0.0, over[3]}}};
+#pragma GCC unroll 4
+    for (int i = 0; i < 4; ++i) solve_upper(f.L, X.entry[i]);
+    return X;
 }
 
 }  // namespace core
