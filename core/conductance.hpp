@@ -6,6 +6,7 @@
 
 #include "determinant.hpp"
 #include "leads/attach.hpp"
+#include "leads/tilted.hpp"
 #include "parallel.hpp"
 #include "wire/parent.hpp"
 #include "wire/pivoted.hpp"
@@ -17,6 +18,7 @@ struct Grid {
     int wire_count;
     const double *mu, *B, *omega;
     int mu_count, B_count, omega_count;
+    double theta = 0;  // angle of the fields
 };
 
 inline WireView view(const RotatedWire& w) {
@@ -35,11 +37,11 @@ struct FieldOf {
     std::vector<typename Arithmetic::Pairing> pairing;
     std::vector<LeadSelfEnergy> leads;
 
-    FieldOf(const Wire& of, double B, const double* omega, int count)
-        : wire(of, B), hop(of.rotated_hopping()), kinetic_zero(2 * of.hopping / hop) {
-        for (int e = 0; e < count; ++e) {
-            pairing.push_back(typename Arithmetic::Pairing(of, omega[e]));
-            leads.push_back(lead_self_energy(of, B, omega[e]));
+    FieldOf(const Wire& of, double B, const Grid& grid)
+        : wire(of, B, grid.theta), hop(of.rotated_hopping()), kinetic_zero(2 * of.hopping / hop) {
+        for (int e = 0; e < grid.omega_count; ++e) {
+            pairing.push_back(typename Arithmetic::Pairing(of, grid.omega[e]));
+            leads.push_back(in_frame_of(of, Arithmetic::leads(of, B, grid.omega[e], grid.theta)));
         }
     }
 };
@@ -49,7 +51,10 @@ struct RealArithmetic {
     using Pairing = core::Pairing;
     using R = Lanes<REAL_LANES>;
     using N = R;
+    using Block = Symmetric4<N>;
+    using Leads = LaneLeads<R>;
     static constexpr int LANES = REAL_LANES;
+    static LeadSelfEnergy leads(const Wire& w, double B, double omega, double) { return self_energy_of_leads(w, B, omega); }
     static void set(Terms<N>& t, int lane, const Pairing& p, double hop) {
         t.normal.set(lane, p.normal / hop);
         t.anomalous.set(lane, p.anomalous / hop);
@@ -64,7 +69,10 @@ struct ComplexArithmetic {
     using Pairing = RetardedPairing;
     using R = Lanes<COMPLEX_LANES>;
     using N = Complex<R>;
+    using Block = Symmetric4<N>;
+    using Leads = LaneLeads<R>;
     static constexpr int LANES = COMPLEX_LANES;
+    static LeadSelfEnergy leads(const Wire& w, double B, double omega, double) { return self_energy_of_leads(w, B, omega); }
     static void set(Terms<N>& t, int lane, const Pairing& p, double hop) {
         t.normal.re.set(lane, p.normal.re / hop), t.normal.im.set(lane, p.normal.im / hop);
         t.anomalous.re.set(lane, p.anomalous.re / hop), t.anomalous.im.set(lane, p.anomalous.im / hop);
@@ -73,13 +81,23 @@ struct ComplexArithmetic {
         return {kinetic, Amplitude(p.normal.re, p.normal.im) / hop, Amplitude(p.anomalous.re, p.anomalous.im) / hop};
     }
     static void set_kinetic(Terms<N>& t, int lane, double value) { t.kinetic.re.set(lane, value), t.kinetic.im.set(lane, 0.0); }
-    static Conductances<R> conductances(const Ends<R>& G, const LaneLeads<R>& leads) { return lossy_conductances_of_ends(G, leads); }
+    template <class Ends, class Leads>
+    static Conductances<R> conductances(const Ends& G, const Leads& leads) { return lossy_conductances_of_ends<R>(G, leads); }
 };
 
-template <class R>
-inline void set_ends(Ends<R>& G, int lane, const EndMatrix& one) {
+// The same in a tilted field.
+struct TiltedArithmetic : ComplexArithmetic {
+    using Block = Block4<N>;
+    using Leads = TiltedLaneLeads<R>;
+    static LeadSelfEnergy leads(const Wire& w, double B, double omega, double theta) {
+        return tilted_self_energy_of_leads(w, B, omega, theta);
+    }
+};
+
+template <class Ends>
+inline void set_ends(Ends& G, int lane, const EndMatrix& one) {
     for (int i = 0; i < 8; ++i)
-        for (int j = i; j < 8; ++j) G(i, j).re.set(lane, one(i, j).real()), G(i, j).im.set(lane, one(i, j).imag());
+        for (int j = Ends::SYMMETRIC ? i : 0; j < 8; ++j) G(i, j).re.set(lane, one(i, j).real()), G(i, j).im.set(lane, one(i, j).imag());
 }
 
 // G and the leads of LANES pairs (μ, ω) from `first` on, those that lost digits solved by pivoting.
@@ -87,7 +105,7 @@ template <class A, class Use>
 inline void solve_pairs(const Grid& grid, const FieldOf<A>& field, int first, double growth_limit, Use use) {
     int pairs = grid.mu_count * grid.omega_count;
     Terms<typename A::N> terms;
-    LaneLeads<typename A::R> leads;
+    typename A::Leads leads;
     auto kinetic = [&](int pair) { return field.kinetic_zero - grid.mu[pair / grid.omega_count] / field.hop; };
     for (int l = 0; l < A::LANES; ++l) {
         int pair = std::min(first + l, pairs - 1), e = pair % grid.omega_count;
@@ -95,8 +113,8 @@ inline void solve_pairs(const Grid& grid, const FieldOf<A>& field, int first, do
         A::set(terms, l, field.pairing[e], field.hop);
         leads.set(l, field.leads[e]);
     }
-    auto ends = eliminate_inner_sites(view(field.wire), terms);
-    Ends<typename A::R> G = attach_leads(ends, leads);
+    auto ends = eliminate_inner_sites<typename A::N, typename A::Block>(view(field.wire), terms);
+    auto G = attach_leads(ends, leads);
     int count = std::min(A::LANES, pairs - first);
     for (int l = 0; l < count; ++l)
         if (!(ends.growth[l] < growth_limit)) {  // NaN too
@@ -113,7 +131,7 @@ inline void for_all_pairs(const Grid& grid, double growth_limit, Stop& stop, Use
     int pairs = grid.mu_count * grid.omega_count;
     in_parallel(grid.wire_count * grid.B_count, stop, [&](int task) {
         int w = task / grid.B_count, f = task % grid.B_count;
-        FieldOf<A> field(grid.wires[w], grid.B[f], grid.omega, grid.omega_count);
+        FieldOf<A> field(grid.wires[w], grid.B[f], grid);
         for (int first = 0; first < pairs && !stop.asked(); first += A::LANES)
             solve_pairs<A>(grid, field, first, growth_limit, [&](const auto& G, const auto& leads, int count) {
                 use(w, f, first, G, leads, count);
@@ -135,8 +153,9 @@ inline void bare_conductance(const Grid& grid, double growth_limit, double* out,
 }
 
 // Fill out, shape (wire, lead, mu, B), with det r at the grid's one energy, ω = 0.
+template <class A>
 inline void reflection_determinants(const Grid& grid, double growth_limit, double* out, Stop& stop) {
-    for_all_pairs<RealArithmetic>(grid, growth_limit, stop, [&](int w, int f, int first, const auto& G, const auto& leads, int count) {
+    for_all_pairs<A>(grid, growth_limit, stop, [&](int w, int f, int first, const auto& G, const auto& leads, int count) {
         for (int l = 0; l < count; ++l)
             for (int lead = 0; lead < 2; ++lead)
                 out[((size_t(w) * 2 + lead) * grid.mu_count + first + l) * grid.B_count + f] =
