@@ -4,6 +4,7 @@
 // Arrays come from solver/compiled.py, which checks them; here only their shapes are trusted.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/complex.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -11,7 +12,7 @@
 #include <exception>
 #include <mutex>
 
-#include "conductance.hpp"
+#include "isolated.hpp"
 #include "processor.hpp"
 
 namespace nb = nanobind;
@@ -25,14 +26,17 @@ using namespace core;
 
 using Vector = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Matrix = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-using Array = nb::ndarray<nb::numpy, double, nb::c_contig, nb::device::cpu>;
+template <class N> using ArrayOf = nb::ndarray<nb::numpy, N, nb::c_contig, nb::device::cpu>;
+using Array = ArrayOf<double>;
+using ComplexArray = ArrayOf<Amplitude>;
 
-Array new_array(std::vector<size_t> shape) {
+template <class N = double>
+ArrayOf<N> new_array(std::vector<size_t> shape) {
     size_t size = 1;
     for (size_t n : shape) size *= n;
-    auto* data = new double[size];
-    nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<double*>(p); });
-    return Array(data, shape.size(), shape.data(), owner);
+    auto* data = new N[size];
+    nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<N*>(p); });
+    return ArrayOf<N>(data, shape.size(), shape.data(), owner);
 }
 
 // The columns of `parameters` are those of solver/compiled.py.
@@ -81,30 +85,58 @@ void run(Work work) {
     if (failed) std::rethrow_exception(failed);
 }
 
-template <class Solve>
-Array on_grid(const Matrix& V, const Matrix& parameters, const Vector& mu, const Vector& B, const Vector& omega,
-              std::vector<size_t> shape, Solve solve) {
+template <class N = double, class Solve>
+ArrayOf<N> on_grid(const Matrix& V, const Matrix& parameters, const Vector& mu, const Vector& B, const Vector& omega,
+                   double theta, std::vector<size_t> shape, Solve solve) {
     std::vector<Wire> wires = wires_of(V, parameters);
-    Grid grid{wires.data(),  int(wires.size()), mu.data(),          B.data(),
-              omega.data(), int(mu.size()),    int(B.size()), int(omega.size())};
-    Array out = new_array(shape);
+    Grid grid{wires.data(),  int(wires.size()), mu.data(),     B.data(),         omega.data(),
+              int(mu.size()), int(B.size()),    int(omega.size()), theta};
+    auto out = new_array<N>(shape);
     run([&](Stop& stop) { solve(grid, out.data(), stop); });
     return out;
 }
 
 template <class Arithmetic>
-Array conductance(Matrix V, Matrix parameters, Vector mu, Vector B, Vector omega, double growth_limit) {
-    return on_grid(V, parameters, mu, B, omega, {V.shape(0), mu.size(), B.size(), omega.size(), 2, 4},
+Array conductance_at(Matrix V, Matrix parameters, Vector mu, Vector B, Vector omega, double theta, double growth_limit) {
+    return on_grid(V, parameters, mu, B, omega, theta, {V.shape(0), mu.size(), B.size(), omega.size(), 2, 4},
                    [&](const Grid& grid, double* out, Stop& stop) {
                        bare_conductance<Arithmetic>(grid, growth_limit, out, stop);
                    });
 }
 
-Array determinant_at_zero(Matrix V, Matrix parameters, Vector mu, Vector B, Vector omega, double growth_limit) {
-    return on_grid(V, parameters, mu, B, omega, {V.shape(0), 2, mu.size(), B.size()},
+template <class Arithmetic>
+Array determinant_at(Matrix V, Matrix parameters, Vector mu, Vector B, Vector omega, double theta, double growth_limit) {
+    return on_grid(V, parameters, mu, B, omega, theta, {V.shape(0), 2, mu.size(), B.size()},
                    [&](const Grid& grid, double* out, Stop& stop) {
-                       reflection_determinants(grid, growth_limit, out, stop);
+                       reflection_determinants<Arithmetic>(grid, growth_limit, out, stop);
                    });
+}
+
+template <class Arithmetic>
+Array conductance(Matrix V, Matrix parameters, Vector mu, Vector B, Vector omega, double growth_limit) {
+    return conductance_at<Arithmetic>(V, parameters, mu, B, omega, 0.0, growth_limit);
+}
+
+Array determinant_at_zero(Matrix V, Matrix parameters, Vector mu, Vector B, Vector omega, double growth_limit) {
+    return determinant_at<RealArithmetic>(V, parameters, mu, B, omega, 0.0, growth_limit);
+}
+
+ComplexArray ends_of_isolated(Matrix V, Matrix parameters, Vector mu, Vector B, Vector x, Vector y, double theta) {
+    return on_grid<Amplitude>(V, parameters, mu, B, x, theta, {V.shape(0), B.size(), mu.size(), x.size(), 8, 8},
+                              [&](const Grid& grid, Amplitude* out, Stop& stop) {
+                                  isolated_ends(grid, y.data(), out, stop);
+                              });
+}
+
+// Of the first wire, shape (energy, lead, charge, 2, 2), in meV.
+ComplexArray tilted_leads(Matrix V, Matrix parameters, double B, Vector omega, double theta) {
+    Wire wire = wires_of(V, parameters)[0];
+    auto out = new_array<Amplitude>({omega.size(), 2, 2, 2, 2});
+    for (size_t e = 0; e < omega.size(); ++e) {
+        LeadSelfEnergy sigma = tilted_self_energy_of_leads(wire, B, omega.data()[e], theta);
+        for (size_t k = 0; k < 16; ++k) out.data()[16 * e + k] = sigma.of[k / 4](k / 2 % 2, k % 2);
+    }
+    return out;
 }
 
 }  // namespace
@@ -119,4 +151,12 @@ NB_MODULE(CORE_MODULE, m) {
           nb::arg("mu"), nb::arg("B"), nb::arg("omega"), nb::arg("growth_limit"));
     m.def("reflection_determinant", &determinant_at_zero, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"),
           nb::arg("B"), nb::arg("omega"), nb::arg("growth_limit"));
+    m.def("tilted_conductance", &conductance_at<core::TiltedArithmetic>, nb::arg("V"), nb::arg("parameters"),
+          nb::arg("mu"), nb::arg("B"), nb::arg("omega"), nb::arg("theta"), nb::arg("growth_limit"));
+    m.def("tilted_determinant", &determinant_at<core::TiltedArithmetic>, nb::arg("V"), nb::arg("parameters"),
+          nb::arg("mu"), nb::arg("B"), nb::arg("omega"), nb::arg("theta"), nb::arg("growth_limit"));
+    m.def("tilted_isolated_ends", &ends_of_isolated, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"),
+          nb::arg("B"), nb::arg("x"), nb::arg("y"), nb::arg("theta"));
+    m.def("tilted_leads", &tilted_leads, nb::arg("V"), nb::arg("parameters"), nb::arg("B"), nb::arg("omega"),
+          nb::arg("theta"));
 }

@@ -81,17 +81,25 @@ CORE_INLINE Ends<R> attach_leads(const EndBlocks<N>& s, const LaneLeads<R>& lead
     return G;
 }
 
-template <class R, class N>
-inline Square8<Complex<R>> attach_leads(const EndBlocks<N, Block4<N>>& s, const TiltedLaneLeads<R>& leads) {
-    Square8<Complex<R>> M;
+template <class N>
+CORE_INLINE Square8<N> ends_of(const EndBlocks<N, Block4<N>>& s) {
+    Square8<N> M;
     for (int i = 0; i < 4; ++i)
         for (int j = 0; j < 4; ++j) {
             M(i, j) = s.E(i, j), M(4 + i, 4 + j) = s.D(i, j);
             M(i, 4 + j) = s.C(i, j), M(4 + j, i) = s.F_transposed(i, j);
         }
+    return M;
+}
+
+template <class R>
+inline Square8<Complex<R>> attach_leads(const EndBlocks<Complex<R>, Block4<Complex<R>>>& s, const TiltedLaneLeads<R>& leads) {
+    Square8<Complex<R>> M = ends_of(s);
     for (int c = 0; c < CHANNELS; ++c)
-        for (int i = 0; i < 2; ++i)
-            for (int j = 0; j < 2; ++j) M(2 * c + i, 2 * c + j) = M(2 * c + i, 2 * c + j) - leads.of[c][i][j];
+        for (int k = 0; k < 4; ++k) {
+            Complex<R>& entry = M(2 * c + k / 2, 2 * c + k % 2);
+            entry = entry - leads.of[c][k / 2][k % 2];
+        }
     return inverted(M);
 }
 

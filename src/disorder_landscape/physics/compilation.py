@@ -98,7 +98,7 @@ def mark() -> Path:
 
 def call_kernels() -> None:
     """Call every kernel on a short wire, with the types of arguments that it always gets."""
-    from disorder_landscape.physics import above_gap, fast_solver, tilted_field
+    from disorder_landscape.physics import above_gap, fast_solver
     from disorder_landscape.physics.finite_temperature import thermal_conductance
     from disorder_landscape.physics.gradient import conductance_gradient
 
@@ -107,5 +107,4 @@ def call_kernels() -> None:
     fast_solver.reflection_determinant([wire], mu, B)
     thermal_conductance([wire], mu, B, bias, TEMPERATURE)
     above_gap.bare_conductance([wire], mu, B, np.array([2 * wire.delta0]))
-    tilted_field.bare_conductance([wire], mu, np.ones(1), np.zeros(1), 0.5)
     conductance_gradient(wire, mu, B, bias, growth_limit=0.0)  # so that it is pivoted, too
