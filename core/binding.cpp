@@ -96,19 +96,20 @@ ArrayOf<N> on_grid(const Matrix& V, const Matrix& parameters, const Vector& mu, 
     return out;
 }
 
-template <class Arithmetic>
+// Each arithmetic takes its own energies of the grid.
+template <class... Arithmetic>
 Array conductance_at(Matrix V, Matrix parameters, Vector mu, Vector B, Vector omega, double theta, double growth_limit) {
     return on_grid(V, parameters, mu, B, omega, theta, {V.shape(0), mu.size(), B.size(), omega.size(), 2, 4},
                    [&](const Grid& grid, double* out, Stop& stop) {
-                       bare_conductance<Arithmetic>(grid, growth_limit, out, stop);
+                       (bare_conductance<Arithmetic>(grid, growth_limit, out, stop), ...);
                    });
 }
 
-template <class Arithmetic>
+template <class... Arithmetic>
 Array determinant_at(Matrix V, Matrix parameters, Vector mu, Vector B, Vector omega, double theta, double growth_limit) {
     return on_grid(V, parameters, mu, B, omega, theta, {V.shape(0), 2, mu.size(), B.size()},
                    [&](const Grid& grid, double* out, Stop& stop) {
-                       reflection_determinants<Arithmetic>(grid, growth_limit, out, stop);
+                       (reflection_determinants<Arithmetic>(grid, growth_limit, out, stop), ...);
                    });
 }
 
@@ -151,9 +152,9 @@ NB_MODULE(CORE_MODULE, m) {
           nb::arg("mu"), nb::arg("B"), nb::arg("omega"), nb::arg("growth_limit"));
     m.def("reflection_determinant", &determinant_at_zero, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"),
           nb::arg("B"), nb::arg("omega"), nb::arg("growth_limit"));
-    m.def("tilted_conductance", &conductance_at<core::TiltedArithmetic>, nb::arg("V"), nb::arg("parameters"),
+    m.def("tilted_conductance", &conductance_at<core::HermitianArithmetic, core::TiltedArithmetic>, nb::arg("V"), nb::arg("parameters"),
           nb::arg("mu"), nb::arg("B"), nb::arg("omega"), nb::arg("theta"), nb::arg("growth_limit"));
-    m.def("tilted_determinant", &determinant_at<core::TiltedArithmetic>, nb::arg("V"), nb::arg("parameters"),
+    m.def("tilted_determinant", &determinant_at<core::HermitianArithmetic, core::TiltedArithmetic>, nb::arg("V"), nb::arg("parameters"),
           nb::arg("mu"), nb::arg("B"), nb::arg("omega"), nb::arg("theta"), nb::arg("growth_limit"));
     m.def("tilted_isolated_ends", &ends_of_isolated, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"),
           nb::arg("B"), nb::arg("x"), nb::arg("y"), nb::arg("theta"));

@@ -34,16 +34,20 @@ template <class Arithmetic>
 struct FieldOf {
     RotatedWire wire;
     double hop, kinetic_zero;  // t', and 2t in units of it
+    std::vector<int> energies;  // those of the grid that this arithmetic is for
     std::vector<typename Arithmetic::Pairing> pairing;
     std::vector<LeadSelfEnergy> leads;
 
     FieldOf(const Wire& of, double B, const Grid& grid)
         : wire(of, B, grid.theta), hop(of.rotated_hopping()), kinetic_zero(2 * of.hopping / hop) {
         for (int e = 0; e < grid.omega_count; ++e) {
+            if (!Arithmetic::takes(of, grid.omega[e])) continue;
+            energies.push_back(e);
             pairing.push_back(typename Arithmetic::Pairing(of, grid.omega[e]));
             leads.push_back(in_frame_of(of, Arithmetic::leads(of, B, grid.omega[e], grid.theta)));
         }
     }
+    int energy_count() const { return int(energies.size()); }
 };
 
 // Below the gap, no broadening: real numbers.
@@ -54,6 +58,7 @@ struct RealArithmetic {
     using Block = Symmetric4<N>;
     using Leads = LaneLeads<R>;
     static constexpr int LANES = REAL_LANES;
+    static bool takes(const Wire&, double) { return true; }
     static LeadSelfEnergy leads(const Wire& w, double B, double omega, double) { return self_energy_of_leads(w, B, omega); }
     static void set(Terms<N>& t, int lane, const Pairing& p, double hop) {
         t.normal.set(lane, p.normal / hop);
@@ -61,7 +66,7 @@ struct RealArithmetic {
     }
     static ComplexTerms one(double kinetic, const Pairing& p, double hop) { return {kinetic, p.normal / hop, p.anomalous / hop}; }
     static void set_kinetic(Terms<N>& t, int lane, double value) { t.kinetic.set(lane, value); }
-    static Conductances<R> conductances(const Ends<R>& G, const LaneLeads<R>& leads) { return lossless_conductances_of_ends(G, leads); }
+    static Conductances<R> conductances(const Ends<R>& G, const LaneLeads<R>& leads) { return lossless_conductances_of_ends<R>(G, leads); }
 };
 
 // At any energy ω ≠ ±Δ₀, and where levels are broadened: complex numbers.
@@ -72,6 +77,7 @@ struct ComplexArithmetic {
     using Block = Symmetric4<N>;
     using Leads = LaneLeads<R>;
     static constexpr int LANES = COMPLEX_LANES;
+    static bool takes(const Wire&, double) { return true; }
     static LeadSelfEnergy leads(const Wire& w, double B, double omega, double) { return self_energy_of_leads(w, B, omega); }
     static void set(Terms<N>& t, int lane, const Pairing& p, double hop) {
         t.normal.re.set(lane, p.normal.re / hop), t.normal.im.set(lane, p.normal.im / hop);
@@ -85,13 +91,22 @@ struct ComplexArithmetic {
     static Conductances<R> conductances(const Ends& G, const Leads& leads) { return lossy_conductances_of_ends<R>(G, leads); }
 };
 
-// The same in a tilted field.
+// In a tilted field, above the gap or with broadening.
 struct TiltedArithmetic : ComplexArithmetic {
     using Block = Block4<N>;
     using Leads = TiltedLaneLeads<R>;
+    static bool takes(const Wire& w, double omega) { return w.dissipation != 0 || std::abs(omega) > w.delta0; }
     static LeadSelfEnergy leads(const Wire& w, double B, double omega, double theta) {
         return tilted_self_energy_of_leads(w, B, omega, theta);
     }
+};
+
+// In a tilted field, at the other energies.
+struct HermitianArithmetic : TiltedArithmetic {
+    using Block = Hermitian4<N>;
+    static bool takes(const Wire& w, double omega) { return !TiltedArithmetic::takes(w, omega); }
+    template <class Ends, class Leads>
+    static Conductances<R> conductances(const Ends& G, const Leads& leads) { return lossless_conductances_of_ends<R>(G, leads); }
 };
 
 template <class Ends>
@@ -103,12 +118,12 @@ inline void set_ends(Ends& G, int lane, const EndMatrix& one) {
 // G and the leads of LANES pairs (μ, ω) from `first` on, those that lost digits solved by pivoting.
 template <class A, class Use>
 inline void solve_pairs(const Grid& grid, const FieldOf<A>& field, int first, double growth_limit, Use use) {
-    int pairs = grid.mu_count * grid.omega_count;
+    int energies = field.energy_count(), pairs = grid.mu_count * energies;
     Terms<typename A::N> terms;
     typename A::Leads leads;
-    auto kinetic = [&](int pair) { return field.kinetic_zero - grid.mu[pair / grid.omega_count] / field.hop; };
+    auto kinetic = [&](int pair) { return field.kinetic_zero - grid.mu[pair / energies] / field.hop; };
     for (int l = 0; l < A::LANES; ++l) {
-        int pair = std::min(first + l, pairs - 1), e = pair % grid.omega_count;
+        int pair = std::min(first + l, pairs - 1), e = pair % energies;
         A::set_kinetic(terms, l, kinetic(pair));
         A::set(terms, l, field.pairing[e], field.hop);
         leads.set(l, field.leads[e]);
@@ -118,23 +133,32 @@ inline void solve_pairs(const Grid& grid, const FieldOf<A>& field, int first, do
     int count = std::min(A::LANES, pairs - first);
     for (int l = 0; l < count; ++l)
         if (!(ends.growth[l] < growth_limit)) {  // NaN too
-            int e = (first + l) % grid.omega_count;
+            int e = (first + l) % energies;
             ComplexTerms one = A::one(kinetic(first + l), field.pairing[e], field.hop);
             set_ends(G, l, pivoted_ends(field.wire, one, on_the_ends(field.leads[e])));
         }
     use(G, leads, count);
 }
 
-// Call use(w, f, first, G, leads, count) for all pieces of up to LANES pairs (μ, ω).
+// Which wire, chemical potential, field and energy.
+struct Place {
+    int w, m, f, e;
+};
+
+// Call use(place, G, leads, count) for all pieces of up to LANES pairs (μ, ω); place(lane) is a Place.
 template <class A, class Use>
 inline void for_all_pairs(const Grid& grid, double growth_limit, Stop& stop, Use use) {
-    int pairs = grid.mu_count * grid.omega_count;
     in_parallel(grid.wire_count * grid.B_count, stop, [&](int task) {
         int w = task / grid.B_count, f = task % grid.B_count;
         FieldOf<A> field(grid.wires[w], grid.B[f], grid);
+        int pairs = grid.mu_count * field.energy_count();
         for (int first = 0; first < pairs && !stop.asked(); first += A::LANES)
             solve_pairs<A>(grid, field, first, growth_limit, [&](const auto& G, const auto& leads, int count) {
-                use(w, f, first, G, leads, count);
+                auto place = [&](int lane) {
+                    int pair = first + lane, energies = field.energy_count();
+                    return Place{w, pair / energies, f, field.energies[pair % energies]};
+                };
+                use(place, G, leads, count);
             });
     });
 }
@@ -142,10 +166,10 @@ inline void for_all_pairs(const Grid& grid, double growth_limit, Stop& stop, Use
 // Fill out, shape (wire, mu, B, omega, 2, 4), with the conductances at ±ω.
 template <class A>
 inline void bare_conductance(const Grid& grid, double growth_limit, double* out, Stop& stop) {
-    for_all_pairs<A>(grid, growth_limit, stop, [&](int w, int f, int first, const auto& G, const auto& leads, int count) {
+    for_all_pairs<A>(grid, growth_limit, stop, [&](auto place, const auto& G, const auto& leads, int count) {
         auto found = A::conductances(G, leads);
         for (int l = 0; l < count; ++l) {
-            int m = (first + l) / grid.omega_count, e = (first + l) % grid.omega_count;
+            auto [w, m, f, e] = place(l);
             double* to = out + (((size_t(w) * grid.mu_count + m) * grid.B_count + f) * grid.omega_count + e) * 8;
             for (int k = 0; k < 8; ++k) to[k] = found.at[k / 4][k % 4][l];
         }
@@ -155,11 +179,13 @@ inline void bare_conductance(const Grid& grid, double growth_limit, double* out,
 // Fill out, shape (wire, lead, mu, B), with det r at the grid's one energy, ω = 0.
 template <class A>
 inline void reflection_determinants(const Grid& grid, double growth_limit, double* out, Stop& stop) {
-    for_all_pairs<A>(grid, growth_limit, stop, [&](int w, int f, int first, const auto& G, const auto& leads, int count) {
-        for (int l = 0; l < count; ++l)
+    for_all_pairs<A>(grid, growth_limit, stop, [&](auto place, const auto& G, const auto& leads, int count) {
+        for (int l = 0; l < count; ++l) {
+            auto [w, m, f, e] = place(l);
             for (int lead = 0; lead < 2; ++lead)
-                out[((size_t(w) * 2 + lead) * grid.mu_count + first + l) * grid.B_count + f] =
+                out[((size_t(w) * 2 + lead) * grid.mu_count + m) * grid.B_count + f] =
                     reflection_determinant(G, leads, lead, l);
+        }
     });
 }
 

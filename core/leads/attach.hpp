@@ -92,8 +92,22 @@ CORE_INLINE Square8<N> ends_of(const EndBlocks<N, Block4<N>>& s) {
     return M;
 }
 
-template <class R>
-inline Square8<Complex<R>> attach_leads(const EndBlocks<Complex<R>, Block4<Complex<R>>>& s, const TiltedLaneLeads<R>& leads) {
+template <class N>
+CORE_INLINE Square8<N> ends_of(const EndBlocks<N, Hermitian4<N>>& s) {
+    Square8<N> M;
+    for (int i = 0; i < 4; ++i) {
+        for (int j = 0; j < i; ++j) {
+            M(i, j) = s.E(i, j), M(4 + i, 4 + j) = s.D(i, j);
+            M(j, i) = conj(s.E(i, j)), M(4 + j, 4 + i) = conj(s.D(i, j));
+        }
+        M(i, i) = s.E(i, i).re, M(4 + i, 4 + i) = s.D(i, i).re;
+        for (int j = 0; j < 4; ++j) M(i, 4 + j) = s.C(i, j), M(4 + j, i) = conj(s.C(i, j));
+    }
+    return M;
+}
+
+template <class R, class Block>
+inline Square8<Complex<R>> attach_leads(const EndBlocks<Complex<R>, Block>& s, const TiltedLaneLeads<R>& leads) {
     Square8<Complex<R>> M = ends_of(s);
     for (int c = 0; c < CHANNELS; ++c)
         for (int k = 0; k < 4; ++k) {
@@ -116,13 +130,20 @@ CORE_INLINE R probability(const Ends& G, const Leads& leads, int a, int b) {
     return total;
 }
 
-template <class R>
-CORE_INLINE Conductances<R> lossless_conductances_of_ends(const Ends<R>& G, const LaneLeads<R>& leads) {
+// All P[out][in]; of a symmetric G it is symmetric.
+template <class R, class Ends, class Leads>
+CORE_INLINE void fill_probabilities(const Ends& G, const Leads& leads, R (&P)[4][4]) {
+    for (int a = 0; a < 4; ++a)
+        for (int b = 0; b < (Ends::SYMMETRIC ? a + 1 : 4); ++b) {
+            P[a][b] = probability<R>(G, leads, a, b);
+            if (Ends::SYMMETRIC) P[b][a] = P[a][b];
+        }
+}
+
+template <class R, class Ends, class Leads>
+CORE_INLINE Conductances<R> lossless_conductances_of_ends(const Ends& G, const Leads& leads) {
     R P[4][4];
-    for (int a = 0; a < 4; ++a) {
-        P[a][a] = 0.0;
-        for (int b = 0; b < a; ++b) P[a][b] = P[b][a] = probability<R>(G, leads, a, b);  // G is symmetric
-    }
+    fill_probabilities(G, leads, P);
     return lossless_conductances(P);
 }
 
@@ -137,11 +158,8 @@ template <class R> CORE_INLINE R minus_imaginary(R total, Complex<R> gamma, Comp
 template <class R, class Ends, class Leads>
 CORE_INLINE Conductances<R> lossy_conductances_of_ends(const Ends& G, const Leads& leads) {
     R P[4][4], net[4];
+    fill_probabilities(G, leads, P);
     for (int a = 0; a < 4; ++a) {
-        for (int b = 0; b < (Ends::SYMMETRIC ? a + 1 : 4); ++b) {
-            P[a][b] = probability<R>(G, leads, a, b);
-            if (Ends::SYMMETRIC) P[b][a] = P[a][b];
-        }
         R absorbed = 0.0;
         for (int i = 0; i < 2; ++i)
             for (int j = 0; j < 2; ++j)

@@ -11,8 +11,8 @@
 // Zeeman term into V_Z(σx cos 2φn + σz sin 2φn).  In this frame M is symmetric at θ = 0: real below
 // the gap of the parent superconductor (Lanes, or with the derivative by ω Dual<Lanes>), complex
 // above it or where levels are broadened (Complex<Lanes>).  Then F = Cᵀ, and is not kept.  In a tilted
-// field the component along the axis of the rotation, V_Z sin θ σy, stays what it is, and M is neither
-// real nor symmetric.
+// field the component along the axis of the rotation, V_Z sin θ σy, stays what it is: M is Hermitian
+// below the gap, and F = C†; above it or where levels are broadened M is neither that nor symmetric.
 //
 // Rounding: D is factored, never inverted for E and C.  If a level of the eliminated piece lies at
 // ω, D⁻¹ is as large as some g ≫ 1, the next D and C too, and E − C X Cᵀ with an explicit X = D⁻¹
@@ -64,19 +64,29 @@ struct EndBlocks<N, Block4<N>> {
     decltype(size(N())) growth;
 };
 
-// A_n = normal + anomalous τx − (kinetic + V) τz − x σx − y σy − z σz; of a symmetric one y is zero.
+// ⟨↓| −x σx − y σy |↑⟩.
+template <class Block, class N>
+CORE_INLINE N down_from_up(double x, double y) {
+    if constexpr (std::is_same_v<Block, Symmetric4<N>>)
+        return -x;
+    else
+        return {-x, -y};
+}
+
+// A_n = normal + anomalous τx − (kinetic + V) τz − x σx − y σy − z σz; in a symmetric one y is zero.
 template <class Block, class N>
 CORE_INLINE Block onsite(const Terms<N>& of, double V, double x, double y, double z) {
     Block A;
     N q = of.kinetic + V;
     N electron = of.normal - q, hole = of.normal + q;
-    A(0, 0) = electron - z, A(0, 1) = -x, A(0, 2) = of.anomalous, A(0, 3) = 0.0;
-    A(1, 1) = electron + z, A(1, 2) = 0.0, A(1, 3) = of.anomalous;
-    A(2, 2) = hole - z, A(2, 3) = -x;
-    A(3, 3) = hole + z;
-    if constexpr (!Block::SYMMETRIC) {
-        A(0, 1) = A(2, 3) = N(-x, y), A(1, 0) = A(3, 2) = N(-x, -y);
-        A(2, 0) = A(3, 1) = of.anomalous, A(2, 1) = A(3, 0) = 0.0;
+    N flip = down_from_up<Block, N>(x, y);
+    A(0, 0) = electron - z;
+    A(1, 0) = flip, A(1, 1) = electron + z;
+    A(2, 0) = of.anomalous, A(2, 1) = 0.0, A(2, 2) = hole - z;
+    A(3, 0) = 0.0, A(3, 1) = of.anomalous, A(3, 2) = flip, A(3, 3) = hole + z;
+    if constexpr (!Block::MIRRORED) {
+        A(0, 1) = A(2, 3) = conj(flip);
+        A(0, 2) = A(1, 3) = of.anomalous, A(0, 3) = A(1, 2) = 0.0;
     }
     return A;
 }
@@ -88,7 +98,7 @@ CORE_INLINE Block minus_hopped(const Block& A, const Block& X) {
 #pragma GCC unroll 4
     for (int i = 0; i < 4; ++i)
 #pragma GCC unroll 4
-        for (int j = Block::SYMMETRIC ? i : 0; j < 4; ++j)
+        for (int j = 0; j <= (Block::MIRRORED ? i : 3); ++j)
             D(i, j) = (i < 2) == (j < 2) ? A(i, j) - X(i, j) : A(i, j) + X(i, j);
     return D;
 }
@@ -105,8 +115,8 @@ CORE_INLINE void eliminate_site(EndBlocks<N, Block>& s, const Block& next) {
     const auto f = factor(s.D);
 #pragma GCC unroll 4
     for (int i = 0; i < 4; ++i) s.growth = larger(s.growth, size(f.over[i]));
-    Block4<N> Z;  // of which this is the transpose; of a symmetric M it is W
-    if constexpr (!Block::SYMMETRIC) {
+    Block4<N> Z;  // of which this is the transpose: of a symmetric M W, of a Hermitian one W*
+    if constexpr (!Block::MIRRORED) {
         Z = s.F_transposed;
 #pragma GCC unroll 4
         for (int j = 0; j < 4; ++j) solve_lower(f.left(), Z.entry[j]);
@@ -119,14 +129,14 @@ CORE_INLINE void eliminate_site(EndBlocks<N, Block>& s, const Block& next) {
         solve_lower(f.right(), W);
 #pragma GCC unroll 4
         for (int k = 0; k < 4; ++k) U[k] = W[k] * f.over[k];
-        if constexpr (Block::SYMMETRIC)
-            for (int k = 0; k < 4; ++k) Z(i, k) = W[k];
+        if constexpr (Block::MIRRORED)
+            for (int k = 0; k < 4; ++k) Z(i, k) = mirrored<typename Block::Pivot>(W[k]);
 #pragma GCC unroll 4
-        for (int j = 0; j <= (Block::SYMMETRIC ? i : 3); ++j)
+        for (int j = 0; j <= (Block::MIRRORED ? i : 3); ++j)
             s.E(i, j) = s.E(i, j) - U[0] * Z(j, 0) - U[1] * Z(j, 1) - U[2] * Z(j, 2) - U[3] * Z(j, 3);
         hop(f.left(), U, s.C.entry[i]);
     }
-    if constexpr (!Block::SYMMETRIC) {
+    if constexpr (!Block::MIRRORED) {
 #pragma GCC unroll 4
         for (int j = 0; j < 4; ++j) {
 #pragma GCC unroll 4
@@ -146,13 +156,13 @@ CORE_INLINE auto largest(const Block4<N>& C) {
 
 template <class N, class Block>
 CORE_INLINE auto largest_coupling(const EndBlocks<N, Block>& s) {
-    if constexpr (Block::SYMMETRIC)
+    if constexpr (Block::MIRRORED)
         return largest(s.C);
     else
         return larger(largest(s.C), largest(s.F_transposed));
 }
 
-// Block: Symmetric4<N>, or at any angle of the field Block4<N>.
+// Block: Symmetric4<N>, Hermitian4<N> or Block4<N>, as M is.
 template <class N, class Block = Symmetric4<N>>
 inline EndBlocks<N, Block> eliminate_inner_sites(const WireView& wire, const Terms<N>& of) {
     auto A = [&](int n) { return onsite<Block>(of, wire.V[n], wire.zeeman_x[n], wire.zeeman_y, wire.zeeman_z[n]); };
@@ -161,7 +171,7 @@ inline EndBlocks<N, Block> eliminate_inner_sites(const WireView& wire, const Ter
     s.D = A(1);
     for (int i = 0; i < 4; ++i)
         for (int j = 0; j < 4; ++j) s.C(i, j) = i != j ? 0.0 : i < 2 ? 1.0 : -1.0;  // τz
-    if constexpr (!Block::SYMMETRIC) s.F_transposed = s.C;
+    if constexpr (!Block::MIRRORED) s.F_transposed = s.C;
     s.growth = 0.0;
     decltype(s.growth) before = 1.0;
     for (int n = 2; n < wire.sites; ++n) {
