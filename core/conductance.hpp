@@ -6,7 +6,6 @@
 
 #include "determinant.hpp"
 #include "leads/attach.hpp"
-#include "leads/tilted.hpp"
 #include "parallel.hpp"
 #include "wire/parent.hpp"
 #include "wire/pivoted.hpp"
@@ -89,24 +88,6 @@ struct ComplexArithmetic {
     static void set_kinetic(Terms<N>& t, int lane, double value) { t.kinetic.re.set(lane, value), t.kinetic.im.set(lane, 0.0); }
     template <class Ends, class Leads>
     static Conductances<R> conductances(const Ends& G, const Leads& leads) { return lossy_conductances_of_ends<R>(G, leads); }
-};
-
-// In a tilted field, above the gap or with broadening.
-struct TiltedArithmetic : ComplexArithmetic {
-    using Block = Block4<N>;
-    using Leads = TiltedLaneLeads<R>;
-    static bool takes(const Wire& w, double omega) { return w.dissipation != 0 || std::abs(omega) > w.delta0; }
-    static LeadSelfEnergy leads(const Wire& w, double B, double omega, double theta) {
-        return tilted_self_energy_of_leads(w, B, omega, theta);
-    }
-};
-
-// In a tilted field, at the other energies.
-struct HermitianArithmetic : TiltedArithmetic {
-    using Block = Hermitian4<N>;
-    static bool takes(const Wire& w, double omega) { return !TiltedArithmetic::takes(w, omega); }
-    template <class Ends, class Leads>
-    static Conductances<R> conductances(const Ends& G, const Leads& leads) { return lossless_conductances_of_ends<R>(G, leads); }
 };
 
 template <class Ends>
