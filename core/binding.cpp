@@ -4,6 +4,7 @@
 // Arrays come from solver/compiled.py, which checks them; here only their shapes are trusted.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/complex.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
@@ -12,8 +13,8 @@
 #include <exception>
 #include <mutex>
 
-#include "conductance.hpp"
 #include "derivatives/gradient.hpp"
+#include "isolated.hpp"
 #include "processor.hpp"
 #include "thermal/conductance.hpp"
 
@@ -30,14 +31,17 @@ using Vector = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::
 using Matrix = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using Biases = nb::ndarray<const std::int64_t, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
 using LeadSlopesArray = nb::ndarray<const Amplitude, nb::shape<-1, -1, 2, 2, 2, 2, 2>, nb::c_contig, nb::device::cpu>;
-using Array = nb::ndarray<nb::numpy, double, nb::c_contig, nb::device::cpu>;
+template <class N> using ArrayOf = nb::ndarray<nb::numpy, N, nb::c_contig, nb::device::cpu>;
+using Array = ArrayOf<double>;
+using ComplexArray = ArrayOf<Amplitude>;
 
-Array new_array(std::vector<size_t> shape) {
+template <class N = double>
+ArrayOf<N> new_array(std::vector<size_t> shape) {
     size_t size = 1;
     for (size_t n : shape) size *= n;
-    auto* data = new double[size];
-    nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<double*>(p); });
-    return Array(data, shape.size(), shape.data(), owner);
+    auto* data = new N[size];
+    nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<N*>(p); });
+    return ArrayOf<N>(data, shape.size(), shape.data(), owner);
 }
 
 // The columns of `parameters` are those of solver/compiled.py.
@@ -86,36 +90,38 @@ void run(Work work) {
     if (failed) std::rethrow_exception(failed);
 }
 
-template <class Solve>
-Array on_grid(const Matrix& V, const Matrix& parameters, const Vector& mu, const Vector& B, const Vector& omega,
-              std::vector<size_t> shape, Solve solve) {
+template <class N = double, class Solve>
+ArrayOf<N> on_grid(const Matrix& V, const Matrix& parameters, const Vector& mu, const Vector& B, const Vector& omega,
+                   double theta, std::vector<size_t> shape, Solve solve) {
     std::vector<Wire> wires = wires_of(V, parameters);
-    Grid grid{wires.data(),  int(wires.size()), mu.data(),          B.data(),
-              omega.data(), int(mu.size()),    int(B.size()), int(omega.size())};
-    Array out = new_array(shape);
+    Grid grid{wires.data(),  int(wires.size()), mu.data(),     B.data(),         omega.data(),
+              int(mu.size()), int(B.size()),    int(omega.size()), theta};
+    auto out = new_array<N>(shape);
     run([&](Stop& stop) { solve(grid, out.data(), stop); });
     return out;
 }
 
-template <class Arithmetic>
-Array conductance(Matrix V, Matrix parameters, Vector mu, Vector B, Vector omega, double growth_limit) {
-    return on_grid(V, parameters, mu, B, omega, {V.shape(0), mu.size(), B.size(), omega.size(), 2, 4},
+// Each arithmetic takes its own energies of the grid.
+template <class... Arithmetic>
+Array conductance_at(Matrix V, Matrix parameters, Vector mu, Vector B, Vector omega, double theta, double growth_limit) {
+    return on_grid(V, parameters, mu, B, omega, theta, {V.shape(0), mu.size(), B.size(), omega.size(), 2, 4},
                    [&](const Grid& grid, double* out, Stop& stop) {
-                       bare_conductance<Arithmetic>(grid, growth_limit, out, stop);
+                       (bare_conductance<Arithmetic>(grid, growth_limit, out, stop), ...);
                    });
 }
 
-Array determinant_at_zero(Matrix V, Matrix parameters, Vector mu, Vector B, Vector omega, double growth_limit) {
-    return on_grid(V, parameters, mu, B, omega, {V.shape(0), 2, mu.size(), B.size()},
+template <class... Arithmetic>
+Array determinant_at(Matrix V, Matrix parameters, Vector mu, Vector B, Vector omega, double theta, double growth_limit) {
+    return on_grid(V, parameters, mu, B, omega, theta, {V.shape(0), 2, mu.size(), B.size()},
                    [&](const Grid& grid, double* out, Stop& stop) {
-                       reflection_determinants(grid, growth_limit, out, stop);
+                       (reflection_determinants<Arithmetic>(grid, growth_limit, out, stop), ...);
                    });
 }
 
 nb::tuple thermal(Matrix V, Matrix parameters, Vector mu, Vector B, Vector bias, double kT, double tolerance, double growth_limit) {
     std::vector<size_t> sets{V.shape(0), mu.size(), B.size()};
     Array error = new_array(sets), energies = new_array(sets);
-    Array G = on_grid(V, parameters, mu, B, bias, {V.shape(0), mu.size(), B.size(), bias.size(), 4},
+    Array G = on_grid(V, parameters, mu, B, bias, 0.0, {V.shape(0), mu.size(), B.size(), bias.size(), 4},
                       [&](const Grid& grid, double* out, Stop& stop) {
                           thermal_conductance(grid, kT, tolerance, growth_limit, out, error.data(), energies.data(), stop);
                       });
@@ -135,6 +141,33 @@ std::pair<Array, Array> conductance_gradient(Matrix V, Matrix parameters, Vector
     Array others = new_array({4, 3, mu.size(), B.size(), bias_count});
     run([&](Stop& stop) { gradient(grid, growth_limit, by_V.data(), others.data(), stop); });
     return {by_V, others};
+}
+
+template <class Arithmetic>
+Array conductance(Matrix V, Matrix parameters, Vector mu, Vector B, Vector omega, double growth_limit) {
+    return conductance_at<Arithmetic>(V, parameters, mu, B, omega, 0.0, growth_limit);
+}
+
+Array determinant_at_zero(Matrix V, Matrix parameters, Vector mu, Vector B, Vector omega, double growth_limit) {
+    return determinant_at<RealArithmetic>(V, parameters, mu, B, omega, 0.0, growth_limit);
+}
+
+ComplexArray ends_of_isolated(Matrix V, Matrix parameters, Vector mu, Vector B, Vector x, Vector y, double theta) {
+    return on_grid<Amplitude>(V, parameters, mu, B, x, theta, {V.shape(0), B.size(), mu.size(), x.size(), 8, 8},
+                              [&](const Grid& grid, Amplitude* out, Stop& stop) {
+                                  isolated_ends(grid, y.data(), out, stop);
+                              });
+}
+
+// Of the first wire, shape (energy, lead, charge, 2, 2), in meV.
+ComplexArray tilted_leads(Matrix V, Matrix parameters, double B, Vector omega, double theta) {
+    Wire wire = wires_of(V, parameters)[0];
+    auto out = new_array<Amplitude>({omega.size(), 2, 2, 2, 2});
+    for (size_t e = 0; e < omega.size(); ++e) {
+        LeadSelfEnergy sigma = tilted_self_energy_of_leads(wire, B, omega.data()[e], theta);
+        for (size_t k = 0; k < 16; ++k) out.data()[16 * e + k] = sigma.of[k / 4](k / 2 % 2, k % 2);
+    }
+    return out;
 }
 
 }  // namespace
@@ -159,4 +192,12 @@ NB_MODULE(CORE_MODULE, m) {
     m.def("conductance_gradient", &conductance_gradient, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"), nb::arg("B"),
           nb::arg("omega"), nb::arg("biases"), nb::arg("bias_count"), nb::arg("slopes"), nb::arg("spin_orbit_slope"),
           nb::arg("growth_limit"));
+    m.def("tilted_conductance", &conductance_at<core::HermitianArithmetic, core::TiltedArithmetic>, nb::arg("V"), nb::arg("parameters"),
+          nb::arg("mu"), nb::arg("B"), nb::arg("omega"), nb::arg("theta"), nb::arg("growth_limit"));
+    m.def("tilted_determinant", &determinant_at<core::HermitianArithmetic, core::TiltedArithmetic>, nb::arg("V"), nb::arg("parameters"),
+          nb::arg("mu"), nb::arg("B"), nb::arg("omega"), nb::arg("theta"), nb::arg("growth_limit"));
+    m.def("tilted_isolated_ends", &ends_of_isolated, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"),
+          nb::arg("B"), nb::arg("x"), nb::arg("y"), nb::arg("theta"));
+    m.def("tilted_leads", &tilted_leads, nb::arg("V"), nb::arg("parameters"), nb::arg("B"), nb::arg("omega"),
+          nb::arg("theta"));
 }

@@ -17,9 +17,12 @@ struct Grid {
     int wire_count;
     const double *mu, *B, *omega;
     int mu_count, B_count, omega_count;
+    double theta = 0;  // angle of the fields
 };
 
-inline WireView view(const RotatedWire& w) { return {w.sites(), w.V.data(), w.zeeman_x.data(), w.zeeman_z.data()}; }
+inline WireView view(const RotatedWire& w) {
+    return {w.sites(), w.V.data(), w.zeeman_x.data(), w.zeeman_z.data(), w.zeeman_y};
+}
 
 // Number of lanes whose divisions hide each other's latency best.
 constexpr int REAL_LANES = 2 * REGISTER;
@@ -30,16 +33,20 @@ template <class Arithmetic>
 struct FieldOf {
     RotatedWire wire;
     double hop, kinetic_zero;  // t', and 2t in units of it
+    std::vector<int> energies;  // those of the grid that this arithmetic is for
     std::vector<typename Arithmetic::Pairing> pairing;
     std::vector<LeadSelfEnergy> leads;
 
-    FieldOf(const Wire& of, double B, const double* omega, int count)
-        : wire(of, B), hop(of.rotated_hopping()), kinetic_zero(2 * of.hopping / hop) {
-        for (int e = 0; e < count; ++e) {
-            pairing.push_back(typename Arithmetic::Pairing(of, omega[e]));
-            leads.push_back(lead_self_energy(of, B, omega[e]));
+    FieldOf(const Wire& of, double B, const Grid& grid)
+        : wire(of, B, grid.theta), hop(of.rotated_hopping()), kinetic_zero(2 * of.hopping / hop) {
+        for (int e = 0; e < grid.omega_count; ++e) {
+            if (!Arithmetic::takes(of, grid.omega[e])) continue;
+            energies.push_back(e);
+            pairing.push_back(typename Arithmetic::Pairing(of, grid.omega[e]));
+            leads.push_back(in_frame_of(of, Arithmetic::leads(of, B, grid.omega[e], grid.theta)));
         }
     }
+    int energy_count() const { return int(energies.size()); }
 };
 
 // Below the gap, no broadening: real numbers.
@@ -47,14 +54,18 @@ struct RealArithmetic {
     using Pairing = core::Pairing;
     using R = Lanes<REAL_LANES>;
     using N = R;
+    using Block = Symmetric4<N>;
+    using Leads = LaneLeads<R>;
     static constexpr int LANES = REAL_LANES;
+    static bool takes(const Wire&, double) { return true; }
+    static LeadSelfEnergy leads(const Wire& w, double B, double omega, double) { return self_energy_of_leads(w, B, omega); }
     static void set(Terms<N>& t, int lane, const Pairing& p, double hop) {
         t.normal.set(lane, p.normal / hop);
         t.anomalous.set(lane, p.anomalous / hop);
     }
     static ComplexTerms one(double kinetic, const Pairing& p, double hop) { return {kinetic, p.normal / hop, p.anomalous / hop}; }
     static void set_kinetic(Terms<N>& t, int lane, double value) { t.kinetic.set(lane, value); }
-    static Conductances<R> conductances(const Ends<R>& G, const LaneLeads<R>& leads) { return lossless_conductances_of_ends(G, leads); }
+    static Conductances<R> conductances(const Ends<R>& G, const LaneLeads<R>& leads) { return lossless_conductances_of_ends<R>(G, leads); }
 };
 
 // At any energy ω ≠ ±Δ₀, and where levels are broadened: complex numbers.
@@ -62,7 +73,11 @@ struct ComplexArithmetic {
     using Pairing = RetardedPairing;
     using R = Lanes<COMPLEX_LANES>;
     using N = Complex<R>;
+    using Block = Symmetric4<N>;
+    using Leads = LaneLeads<R>;
     static constexpr int LANES = COMPLEX_LANES;
+    static bool takes(const Wire&, double) { return true; }
+    static LeadSelfEnergy leads(const Wire& w, double B, double omega, double) { return self_energy_of_leads(w, B, omega); }
     static void set(Terms<N>& t, int lane, const Pairing& p, double hop) {
         t.normal.re.set(lane, p.normal.re / hop), t.normal.im.set(lane, p.normal.im / hop);
         t.anomalous.re.set(lane, p.anomalous.re / hop), t.anomalous.im.set(lane, p.anomalous.im / hop);
@@ -71,50 +86,60 @@ struct ComplexArithmetic {
         return {kinetic, Amplitude(p.normal.re, p.normal.im) / hop, Amplitude(p.anomalous.re, p.anomalous.im) / hop};
     }
     static void set_kinetic(Terms<N>& t, int lane, double value) { t.kinetic.re.set(lane, value), t.kinetic.im.set(lane, 0.0); }
-    static Conductances<R> conductances(const Ends<R>& G, const LaneLeads<R>& leads) { return lossy_conductances_of_ends(G, leads); }
+    template <class Ends, class Leads>
+    static Conductances<R> conductances(const Ends& G, const Leads& leads) { return lossy_conductances_of_ends<R>(G, leads); }
 };
 
-template <class R>
-inline void set_ends(Ends<R>& G, int lane, const EndMatrix& one) {
+template <class Ends>
+inline void set_ends(Ends& G, int lane, const EndMatrix& one) {
     for (int i = 0; i < 8; ++i)
-        for (int j = i; j < 8; ++j) G(i, j).re.set(lane, one(i, j).real()), G(i, j).im.set(lane, one(i, j).imag());
+        for (int j = Ends::SYMMETRIC ? i : 0; j < 8; ++j) G(i, j).re.set(lane, one(i, j).real()), G(i, j).im.set(lane, one(i, j).imag());
 }
 
 // G and the leads of LANES pairs (μ, ω) from `first` on, those that lost digits solved by pivoting.
 template <class A, class Use>
 inline void solve_pairs(const Grid& grid, const FieldOf<A>& field, int first, double growth_limit, Use use) {
-    int pairs = grid.mu_count * grid.omega_count;
+    int energies = field.energy_count(), pairs = grid.mu_count * energies;
     Terms<typename A::N> terms{};
-    LaneLeads<typename A::R> leads{};
-    auto kinetic = [&](int pair) { return field.kinetic_zero - grid.mu[pair / grid.omega_count] / field.hop; };
+    typename A::Leads leads{};
+    auto kinetic = [&](int pair) { return field.kinetic_zero - grid.mu[pair / energies] / field.hop; };
     for (int l = 0; l < A::LANES; ++l) {
-        int pair = std::min(first + l, pairs - 1), e = pair % grid.omega_count;
+        int pair = std::min(first + l, pairs - 1), e = pair % energies;
         A::set_kinetic(terms, l, kinetic(pair));
         A::set(terms, l, field.pairing[e], field.hop);
         leads.set(l, field.leads[e]);
     }
-    auto ends = eliminate_inner_sites(view(field.wire), terms);
-    Ends<typename A::R> G = attach_leads(ends, leads);
+    auto ends = eliminate_inner_sites<typename A::N, typename A::Block>(view(field.wire), terms);
+    auto G = attach_leads(ends, leads);
     int count = std::min(A::LANES, pairs - first);
     for (int l = 0; l < count; ++l)
         if (!(ends.growth[l] < growth_limit)) {  // NaN too
-            int e = (first + l) % grid.omega_count;
+            int e = (first + l) % energies;
             ComplexTerms one = A::one(kinetic(first + l), field.pairing[e], field.hop);
             set_ends(G, l, pivoted_ends(field.wire, one, on_the_ends(field.leads[e])));
         }
     use(G, leads, count);
 }
 
-// Call use(w, f, first, G, leads, count) for all pieces of up to LANES pairs (μ, ω).
+// Which wire, chemical potential, field and energy.
+struct Place {
+    int w, m, f, e;
+};
+
+// Call use(place, G, leads, count) for all pieces of up to LANES pairs (μ, ω); place(lane) is a Place.
 template <class A, class Use>
 inline void for_all_pairs(const Grid& grid, double growth_limit, Stop& stop, Use use) {
-    int pairs = grid.mu_count * grid.omega_count;
     in_parallel(grid.wire_count * grid.B_count, stop, [&](int task) {
         int w = task / grid.B_count, f = task % grid.B_count;
-        FieldOf<A> field(grid.wires[w], grid.B[f], grid.omega, grid.omega_count);
+        FieldOf<A> field(grid.wires[w], grid.B[f], grid);
+        int pairs = grid.mu_count * field.energy_count();
         for (int first = 0; first < pairs && !stop.asked(); first += A::LANES)
             solve_pairs<A>(grid, field, first, growth_limit, [&](const auto& G, const auto& leads, int count) {
-                use(w, f, first, G, leads, count);
+                auto place = [&](int lane) {
+                    int pair = first + lane, energies = field.energy_count();
+                    return Place{w, pair / energies, f, field.energies[pair % energies]};
+                };
+                use(place, G, leads, count);
             });
     });
 }
@@ -122,10 +147,10 @@ inline void for_all_pairs(const Grid& grid, double growth_limit, Stop& stop, Use
 // Fill out, shape (wire, mu, B, omega, 2, 4), with the conductances at ±ω.
 template <class A>
 inline void bare_conductance(const Grid& grid, double growth_limit, double* out, Stop& stop) {
-    for_all_pairs<A>(grid, growth_limit, stop, [&](int w, int f, int first, const auto& G, const auto& leads, int count) {
+    for_all_pairs<A>(grid, growth_limit, stop, [&](auto place, const auto& G, const auto& leads, int count) {
         auto found = A::conductances(G, leads);
         for (int l = 0; l < count; ++l) {
-            int m = (first + l) / grid.omega_count, e = (first + l) % grid.omega_count;
+            auto [w, m, f, e] = place(l);
             double* to = out + (((size_t(w) * grid.mu_count + m) * grid.B_count + f) * grid.omega_count + e) * 8;
             for (int k = 0; k < 8; ++k) to[k] = found.at[k / 4][k % 4][l];
         }
@@ -133,12 +158,15 @@ inline void bare_conductance(const Grid& grid, double growth_limit, double* out,
 }
 
 // Fill out, shape (wire, lead, mu, B), with det r at the grid's one energy, ω = 0.
+template <class A>
 inline void reflection_determinants(const Grid& grid, double growth_limit, double* out, Stop& stop) {
-    for_all_pairs<RealArithmetic>(grid, growth_limit, stop, [&](int w, int f, int first, const auto& G, const auto& leads, int count) {
-        for (int l = 0; l < count; ++l)
+    for_all_pairs<A>(grid, growth_limit, stop, [&](auto place, const auto& G, const auto& leads, int count) {
+        for (int l = 0; l < count; ++l) {
+            auto [w, m, f, e] = place(l);
             for (int lead = 0; lead < 2; ++lead)
-                out[((size_t(w) * 2 + lead) * grid.mu_count + first + l) * grid.B_count + f] =
+                out[((size_t(w) * 2 + lead) * grid.mu_count + m) * grid.B_count + f] =
                     reflection_determinant(G, leads, lead, l);
+        }
     });
 }
 

@@ -26,19 +26,19 @@ inline Amplitude determinant(Amplitude (&M)[4][4]) {
     return product;
 }
 
-template <class R>
-inline double reflection_determinant(const Ends<R>& G, const LaneLeads<R>& leads, int lead, int lane) {
+template <class R> inline Amplitude of_lane(R x, int lane) { return x[lane]; }
+template <class R> inline Amplitude of_lane(Complex<R> x, int lane) { return {x.re[lane], x.im[lane]}; }
+
+template <class Ends, class Leads>
+inline double reflection_determinant(const Ends& G, const Leads& leads, int lead, int lane) {
     Amplitude M[4][4];
     for (int i = 0; i < 4; ++i)
         for (int j = 0; j < 4; ++j) {
             int charge = i / 2, first = 4 * lead + 2 * charge;
-            Amplitude total = i == j ? -1.0 : 0.0;
-            for (int k = 0; k < 2; ++k) {
-                Complex<R> g = G(first + k, 4 * lead + j);
-                double gamma = leads.gamma(2 * lead + charge, i % 2, k)[lane];
-                total += Amplitude(0.0, gamma) * Amplitude(g.re[lane], g.im[lane]);
-            }
-            M[i][j] = total;
+            Amplitude total = 0.0;
+            for (int k = 0; k < 2; ++k)
+                total += of_lane(leads.gamma(2 * lead + charge, i % 2, k), lane) * of_lane(G(first + k, 4 * lead + j), lane);
+            M[i][j] = Amplitude(0.0, 1.0) * total - (i == j ? 1.0 : 0.0);
         }
     return determinant(M).real();
 }

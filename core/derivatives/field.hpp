@@ -21,6 +21,7 @@ struct GradientGrid {
             if (biases[2 * e] >= 0 && biases[2 * e + 1] >= 0) return true;
         return false;
     }
+    Grid energies() const { return {&wire, 1, mu, this->B, omega, mu_count, B_count, omega_count}; }
 };
 
 // One wire and field with its frame's slopes.
@@ -29,7 +30,7 @@ struct TurningField : FieldOf<RealArithmetic> {
     double angle, hop_slope;             // φ and d ln t'/dα
     std::vector<SiteTurn> turns;
 
-    TurningField(const GradientGrid& grid, double B) : FieldOf(grid.wire, B, grid.omega, grid.omega_count) {
+    TurningField(const GradientGrid& grid, double B) : FieldOf(grid.wire, B, grid.energies()) {
         const Wire& w = grid.wire;
         zeeman_per_tesla = w.zeeman_per_tesla / hop, zeeman = zeeman_per_tesla * B, angle = w.angle();
         hop_slope = w.spin_orbit_hopping * grid.s_slope / (hop * hop);

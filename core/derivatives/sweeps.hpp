@@ -69,7 +69,7 @@ CORE_INLINE Factors4<R> step(Symmetric4<R>& D, const Symmetric4<R>& A, R& growth
 template <class R>
 inline EndBlocks<R> sweep(const WireView& wire, const Terms<R>& of, Site<R>* sites) {
     int last = wire.sites - 1;
-    auto block = [&](int n) { return onsite(of, wire.V[n], wire.zeeman_x[n], wire.zeeman_z[n]); };
+    auto block = [&](int n) { return onsite<Symmetric4<R>>(of, wire.V[n], wire.zeeman_x[n], 0.0, wire.zeeman_z[n]); };
     Symmetric4<R> left = block(1), right = block(last - 1);
     R growth = 0.0, before = 1.0;
     for (int n = 1; n < last; ++n) {  // both at once: each waits for its divisions
@@ -82,18 +82,18 @@ inline EndBlocks<R> sweep(const WireView& wire, const Terms<R>& of, Site<R>* sit
         P = carried(sites[n].right, P);
         sites[n].P = P;
         if (n % LOOK_EVERY == 0) {
-            R now = largest_coupling(P), product = before * now;
+            R now = largest(P), product = before * now;
             growth = larger(growth, product);
             before = now;
         }
     }
     EndBlocks<R> ends;
     ends.E = right, ends.D = left;
-    R largest = largest_coupling(P);
+    R most = largest(P);
     for (int i = 0; i < 4; ++i)
         for (int j = 0; j < 4; ++j) ends.C(i, j) = j < 2 ? P(j, i) : -P(j, i);
-    for (int k = 0; k < 10; ++k) largest = larger(largest, larger(size(left.entry[k]), size(right.entry[k])));
-    R square = largest * largest;
+    for (int k = 0; k < 10; ++k) most = larger(most, larger(size(left.entry[k]), size(right.entry[k])));
+    R square = most * most;
     ends.growth = larger(growth, square);
     return ends;
 }

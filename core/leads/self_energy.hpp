@@ -141,23 +141,36 @@ inline Spin2 rotated(const Spin2& M, double angle) {
     return out;
 }
 
-// Both leads' Σ at one energy in the wire's rotated frame, in units of t'.
-inline LeadSelfEnergy lead_self_energy(const Wire& wire, double B, double omega) {
-    LeadParameters lead(wire, B);
-    double hop = wire.rotated_hopping(), turn = wire.angle() * (wire.sites - 1);
+// From the right lead's electron blocks at E and −E all four of both leads at E.  The mirror takes θ,
+// at which a field may be tilted against the wire, to −θ, and that transposes.
+inline LeadSelfEnergy of_both_leads(const Spin2& electron, const Spin2& electron_at_minus) {
     LeadSelfEnergy sigma;
     for (int charge = 0; charge < 2; ++charge) {
-        Spin2 right = charge == 0 ? detail::electron_self_energy(omega, lead)
-                                  : of_holes(detail::electron_self_energy(-omega, lead));
-        Spin2 left{{{right(1, 1), right(1, 0)}, {right(0, 1), right(0, 0)}}};
-        right = rotated(right, turn);
-        for (int i = 0; i < 2; ++i)
-            for (int j = 0; j < 2; ++j) {
-                sigma.of[charge](i, j) = left(i, j) / hop;
-                sigma.of[2 + charge](i, j) = right(i, j) / hop;
-            }
+        Spin2 right = charge == 0 ? electron : of_holes(electron_at_minus);
+        sigma.of[charge] = {{{right(1, 1), right(0, 1)}, {right(1, 0), right(0, 0)}}};
+        sigma.of[2 + charge] = right;
     }
     return sigma;
+}
+
+// Both leads' Σ at one energy in their own frame, in meV.
+inline LeadSelfEnergy self_energy_of_leads(const Wire& wire, double B, double omega) {
+    LeadParameters lead(wire, B);
+    return of_both_leads(detail::electron_self_energy(omega, lead), detail::electron_self_energy(-omega, lead));
+}
+
+// The same in the wire's rotated frame, in units of t'.
+inline LeadSelfEnergy in_frame_of(const Wire& wire, LeadSelfEnergy sigma) {
+    double hop = wire.rotated_hopping(), turn = wire.angle() * (wire.sites - 1);
+    for (int c = 0; c < CHANNELS; ++c) {
+        if (c == RIGHT_ELECTRON || c == RIGHT_HOLE) sigma.of[c] = rotated(sigma.of[c], turn);
+        for (int k = 0; k < 4; ++k) sigma.of[c](k / 2, k % 2) /= hop;
+    }
+    return sigma;
+}
+
+inline LeadSelfEnergy lead_self_energy(const Wire& wire, double B, double omega) {
+    return in_frame_of(wire, self_energy_of_leads(wire, B, omega));
 }
 
 }  // namespace core

@@ -99,8 +99,8 @@ inline void solve_nodes(const ThermalField& field, const EnergyPlan& plan, const
         }
         EndSlopes<SlopeReal> slopes;
         auto ends = eliminate_inner_sites_with_slopes(view(field.wire), terms, normal_slope, anomalous_slope, slopes);
-        Ends<SlopeReal> G = attach_leads(ends, leads);
-        auto bare = lossless_conductances_of_ends(G, leads);
+        auto G = attach_leads(ends, leads);
+        auto bare = lossless_conductances_of_ends<SlopeReal>(G, leads);
         Symmetric8<SlopeReal> isolated, slope;
         isolated_ends(ends, slopes, isolated, slope);
         for (int l = 0; l < SLOPE_LANES && piece + l < total; ++l) {
@@ -134,8 +134,8 @@ inline void solve_checks(const ThermalField& field, const EnergyPlan& plan, cons
             leads.set(l, shared ? field.leads[plan.nodes + check] : lead_self_energy(field.of, field.B, omega));
         }
         auto ends = eliminate_inner_sites(view(field.wire), terms);
-        Ends<CheckReal> G = attach_leads(ends, leads);
-        auto bare = lossless_conductances_of_ends(G, leads);
+        auto G = attach_leads(ends, leads);
+        auto bare = lossless_conductances_of_ends<CheckReal>(G, leads);
         for (int l = 0; l < REAL_LANES && piece + l < total; ++l) {
             SetData& of = data[(piece + l) / COMPARED];
             int check = (piece + l) % COMPARED;

@@ -8,6 +8,7 @@ namespace core {
 // Upper triangle, row by row.
 template <class N>
 struct Symmetric8 {
+    static constexpr bool SYMMETRIC = true;
     static constexpr int place(int i, int j) {
         return i <= j ? i * 7 - i * (i - 1) / 2 + j : j * 7 - j * (j - 1) / 2 + i;
     }

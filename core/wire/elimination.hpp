@@ -2,18 +2,21 @@
 //
 // The leads touch the end sites alone, so the inner sites are eliminated from M = (ω − H)/t',
 //
-//     M' = [[E, C], [Cᵀ, D]],   E ← E − C D⁻¹ Cᵀ,   C ← −C D⁻¹ τz,   D ← A_{n+1} − τz D⁻¹ τz,
+//     M' = [[E, C], [F, D]],   E ← E − C D⁻¹ F,   C ← −C D⁻¹ τz,   F ← −τz D⁻¹ F,
+//                              D ← A_{n+1} − τz D⁻¹ τz,
 //
 // with H of Eq. S1 and its self-energy, D the block of the site that is eliminated next and A_n the
 // onsite blocks of M.  A rotation of the spin from site to site, U_n = exp(−iσyφn), tan φ = α/2at,
 // has made the hopping −t'τz with t' = √(t² + (α/2a)²), so that it costs signs only; it turns the
 // Zeeman term into V_Z(σx cos 2φn + σz sin 2φn).  In this frame M is symmetric at θ = 0: real below
 // the gap of the parent superconductor (Lanes), complex
-// above it or where levels are broadened (Complex<Lanes>).
+// above it or where levels are broadened (Complex<Lanes>).  Then F = Cᵀ, and is not kept.  In a tilted
+// field the component along the axis of the rotation, V_Z sin θ σy, stays what it is: M is Hermitian
+// below the gap, and F = C†; above it or where levels are broadened M is neither that nor symmetric.
 //
 // Rounding: D is factored, never inverted for E and C.  If a level of the eliminated piece lies at
 // ω, D⁻¹ is as large as some g ≫ 1, the next D and C too, and E − C X Cᵀ with an explicit X = D⁻¹
-// would lose g² ulps, where the factored E − (W Δ⁻¹) Wᵀ, W = C L⁻ᵀ, loses g.  The largest |Δ⁻¹| met is
+// would lose g² ulps, where the factored E − (W Δ⁻¹) Z, W = C R⁻ᵀ, Z = L⁻¹F, loses g.  The largest |Δ⁻¹| met is
 // one measure of it.  It does not show a pair of Majorana modes at the ends of the eliminated piece:
 // the pivots stay moderate, C grows as 1/splitting and stays large from site to site, and the terms of
 // C D⁻¹ Cᵀ, which cancel, are of the order of |C|².  So the other measure is max|C| at one site times
@@ -37,6 +40,7 @@ struct WireView {
     const double* V;         // with barriers
     const double* zeeman_x;  // V_Z cos 2φn
     const double* zeeman_z;  // V_Z sin 2φn
+    double zeeman_y;
 };
 
 // Terms that all sites of a lane share, in units of t'.
@@ -47,97 +51,150 @@ struct Terms {
     N anomalous;  // γΔ₀/√(Δ₀²−ω²)
 };
 
-template <class N>
+template <class N, class Block = Symmetric4<N>>
 struct EndBlocks {
-    Symmetric4<N> E, D;
+    Block E, D;
     Block4<N> C;
     decltype(size(N())) growth;
 };
 
-// A_n = normal + anomalous τx − (kinetic + V) τz − x σx − z σz.
 template <class N>
-CORE_INLINE Symmetric4<N> onsite(const Terms<N>& of, double V, double x, double z) {
-    Symmetric4<N> A;
+struct EndBlocks<N, Block4<N>> {
+    Block4<N> E, D, C, F_transposed;
+    decltype(size(N())) growth;
+};
+
+// ⟨↓| −x σx − y σy |↑⟩.
+template <class Block, class N>
+CORE_INLINE N down_from_up(double x, double y) {
+    if constexpr (std::is_same_v<Block, Symmetric4<N>>)
+        return -x;
+    else
+        return {-x, -y};
+}
+
+// A_n = normal + anomalous τx − (kinetic + V) τz − x σx − y σy − z σz; in a symmetric one y is zero.
+template <class Block, class N>
+CORE_INLINE Block onsite(const Terms<N>& of, double V, double x, double y, double z) {
+    Block A;
     N q = of.kinetic + V;
     N electron = of.normal - q, hole = of.normal + q;
-    A(0, 0) = electron - z, A(0, 1) = -x, A(0, 2) = of.anomalous, A(0, 3) = 0.0;
-    A(1, 1) = electron + z, A(1, 2) = 0.0, A(1, 3) = of.anomalous;
-    A(2, 2) = hole - z, A(2, 3) = -x;
-    A(3, 3) = hole + z;
+    N flip = down_from_up<Block, N>(x, y);
+    A(0, 0) = electron - z;
+    A(1, 0) = flip, A(1, 1) = electron + z;
+    A(2, 0) = of.anomalous, A(2, 1) = 0.0, A(2, 2) = hole - z;
+    A(3, 0) = 0.0, A(3, 1) = of.anomalous, A(3, 2) = flip, A(3, 3) = hole + z;
+    if constexpr (!Block::MIRRORED) {
+        A(0, 1) = A(2, 3) = conj(flip);
+        A(0, 2) = A(1, 3) = of.anomalous, A(0, 3) = A(1, 2) = 0.0;
+    }
     return A;
 }
 
 // A − τz X τz.
-template <class N>
-CORE_INLINE Symmetric4<N> minus_hopped(const Symmetric4<N>& A, const Symmetric4<N>& X) {
-    Symmetric4<N> D;
+template <class Block>
+CORE_INLINE Block minus_hopped(const Block& A, const Block& X) {
+    Block D;
 #pragma GCC unroll 4
     for (int i = 0; i < 4; ++i)
 #pragma GCC unroll 4
-        for (int j = i; j < 4; ++j) D(i, j) = (i < 2) == (j < 2) ? A(i, j) - X(i, j) : A(i, j) + X(i, j);
+        for (int j = 0; j <= (Block::MIRRORED ? i : 3); ++j)
+            D(i, j) = (i < 2) == (j < 2) ? A(i, j) - X(i, j) : A(i, j) + X(i, j);
     return D;
 }
 
-// Eliminate the site of block D, before the site of onsite block `next`; return X = D⁻¹.
+// The row −x T⁻¹ τz.
 template <class N>
-CORE_INLINE Symmetric4<N> eliminate_site(EndBlocks<N>& s, const Symmetric4<N>& next) {
-    Factors4<N> f = factor(s.D);
+CORE_INLINE void hop(const Triangle4<N>& T, N (&x)[4], N (&to)[4]) {
+    solve_upper(T, x);
+    to[0] = -x[0], to[1] = -x[1], to[2] = x[2], to[3] = x[3];
+}
+
+// Eliminate the site of block D, before the site of onsite block `next`; return X = D⁻¹.
+template <class N, class Block>
+CORE_INLINE Block eliminate_site(EndBlocks<N, Block>& s, const Block& next) {
+    const auto f = factor(s.D);
 #pragma GCC unroll 4
     for (int i = 0; i < 4; ++i) s.growth = larger(s.growth, size(f.over[i]));
-    N W[4][4];
+    Block4<N> Z;  // of which this is the transpose: of a symmetric M W, of a Hermitian one W*
+    if constexpr (!Block::MIRRORED) {
+        Z = s.F_transposed;
+#pragma GCC unroll 4
+        for (int j = 0; j < 4; ++j) solve_lower(f.left(), Z.entry[j]);
+    }
 #pragma GCC unroll 4
     for (int i = 0; i < 4; ++i) {
-        N U[4];
+        N W[4], U[4];
 #pragma GCC unroll 4
-        for (int k = 0; k < 4; ++k) W[i][k] = s.C(i, k);
-        solve_lower(f, W[i]);
+        for (int k = 0; k < 4; ++k) W[k] = s.C(i, k);
+        solve_lower(f.right(), W);
 #pragma GCC unroll 4
-        for (int k = 0; k < 4; ++k) U[k] = W[i][k] * f.over[k];
+        for (int k = 0; k < 4; ++k) U[k] = W[k] * f.over[k];
+        if constexpr (Block::MIRRORED)
+            for (int k = 0; k < 4; ++k) Z(i, k) = mirrored<typename Block::Pivot>(W[k]);
 #pragma GCC unroll 4
-        for (int j = 0; j <= i; ++j)
-            s.E(j, i) = s.E(j, i) - U[0] * W[j][0] - U[1] * W[j][1] - U[2] * W[j][2] - U[3] * W[j][3];
-        solve_upper(f, U);
-        s.C(i, 0) = -U[0], s.C(i, 1) = -U[1], s.C(i, 2) = U[2], s.C(i, 3) = U[3];
+        for (int j = 0; j <= (Block::MIRRORED ? i : 3); ++j)
+            s.E(i, j) = s.E(i, j) - U[0] * Z(j, 0) - U[1] * Z(j, 1) - U[2] * Z(j, 2) - U[3] * Z(j, 3);
+        hop(f.left(), U, s.C.entry[i]);
     }
-    Symmetric4<N> X = inverse(f);
+    if constexpr (!Block::MIRRORED) {
+#pragma GCC unroll 4
+        for (int j = 0; j < 4; ++j) {
+#pragma GCC unroll 4
+            for (int k = 0; k < 4; ++k) Z(j, k) = Z(j, k) * f.over[k];
+            hop(f.right(), Z.entry[j], s.F_transposed.entry[j]);
+        }
+    }
+    Block X = inverse(f);
     s.D = minus_hopped(next, X);
     return X;
 }
 
 template <class N>
-CORE_INLINE auto largest_coupling(const Block4<N>& C) {
-    auto largest = size(C(0, 0));
-    for (int k = 1; k < 16; ++k) largest = larger(largest, size(C(k / 4, k % 4)));
-    return largest;
+CORE_INLINE auto largest(const Block4<N>& C) {
+    auto found = size(C(0, 0));
+    for (int k = 1; k < 16; ++k) found = larger(found, size(C(k / 4, k % 4)));
+    return found;
 }
 
-template <class N>
-CORE_INLINE EndBlocks<N> first_two_sites(const WireView& wire, const Terms<N>& of) {
-    EndBlocks<N> s;
-    s.E = onsite(of, wire.V[0], wire.zeeman_x[0], wire.zeeman_z[0]);
-    s.D = onsite(of, wire.V[1], wire.zeeman_x[1], wire.zeeman_z[1]);
+template <class N, class Block>
+CORE_INLINE auto largest_coupling(const EndBlocks<N, Block>& s) {
+    if constexpr (Block::MIRRORED)
+        return largest(s.C);
+    else
+        return larger(largest(s.C), largest(s.F_transposed));
+}
+
+template <class N, class Block = Symmetric4<N>>
+CORE_INLINE EndBlocks<N, Block> first_two_sites(const Block& first, const Block& second) {
+    EndBlocks<N, Block> s;
+    s.E = first;
+    s.D = second;
     for (int i = 0; i < 4; ++i)
         for (int j = 0; j < 4; ++j) s.C(i, j) = i != j ? 0.0 : i < 2 ? 1.0 : -1.0;  // τz
+    if constexpr (!Block::MIRRORED) s.F_transposed = s.C;
     s.growth = 0.0;
     return s;
 }
 
 // Take a look at C now and then, see LOOK_EVERY.
-template <class N>
-CORE_INLINE void look_at_coupling(EndBlocks<N>& s, int n, int sites, decltype(size(N()))& before) {
+template <class N, class Block>
+CORE_INLINE void look_at_coupling(EndBlocks<N, Block>& s, int n, int sites, decltype(size(N()))& before) {
     if (n % LOOK_EVERY != 0 && n != sites - 1) return;
-    auto now = largest_coupling(s.C);
+    auto now = largest_coupling(s);
     decltype(now) product = before * now;
     s.growth = larger(s.growth, product);
     before = now;
 }
 
-template <class N>
-inline EndBlocks<N> eliminate_inner_sites(const WireView& wire, const Terms<N>& of) {
-    EndBlocks<N> s = first_two_sites(wire, of);
+// Block: Symmetric4<N>, Hermitian4<N> or Block4<N>, as M is.
+template <class N, class Block = Symmetric4<N>>
+inline EndBlocks<N, Block> eliminate_inner_sites(const WireView& wire, const Terms<N>& of) {
+    auto A = [&](int n) { return onsite<Block>(of, wire.V[n], wire.zeeman_x[n], wire.zeeman_y, wire.zeeman_z[n]); };
+    EndBlocks<N, Block> s = first_two_sites<N>(A(0), A(1));
     decltype(s.growth) before = 1.0;
     for (int n = 2; n < wire.sites; ++n) {
-        eliminate_site(s, onsite(of, wire.V[n], wire.zeeman_x[n], wire.zeeman_z[n]));
+        eliminate_site(s, A(n));
         look_at_coupling(s, n, wire.sites, before);
     }
     return s;

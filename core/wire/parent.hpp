@@ -24,6 +24,7 @@ struct Pairing {
 struct RetardedPairing {
     Complex<double> normal, anomalous;
 
+    RetardedPairing(Complex<double> normal, Complex<double> anomalous) : normal(normal), anomalous(anomalous) {}
     RetardedPairing(const Wire& wire, double omega) {
         double size = std::sqrt(std::abs(wire.delta0 * wire.delta0 - omega * omega));
         Complex<double> root(size, 0.0);

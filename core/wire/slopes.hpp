@@ -65,13 +65,14 @@ CORE_INLINE void differentiate_site(EndSlopes<N>& d, const Block4<N>& C, const S
 template <class N>
 inline EndBlocks<N> eliminate_inner_sites_with_slopes(const WireView& wire, const Terms<N>& of, N normal_slope,
                                                       N anomalous_slope, EndSlopes<N>& d) {
-    EndBlocks<N> s = first_two_sites(wire, of);
+    auto A = [&](int n) { return onsite<Symmetric4<N>>(of, wire.V[n], wire.zeeman_x[n], 0.0, wire.zeeman_z[n]); };
+    EndBlocks<N> s = first_two_sites<N>(A(0), A(1));
     const Symmetric4<N> dA = onsite_slope(normal_slope, anomalous_slope);
     d.E = d.D = dA;
     for (int k = 0; k < 16; ++k) d.C(k / 4, k % 4) = 0.0;
     decltype(s.growth) before = 1.0;
     for (int n = 2; n < wire.sites; ++n) {
-        Symmetric4<N> X = eliminate_site(s, onsite(of, wire.V[n], wire.zeeman_x[n], wire.zeeman_z[n]));
+        Symmetric4<N> X = eliminate_site(s, A(n));
         look_at_coupling(s, n, wire.sites, before);
         differentiate_site(d, s.C, X, dA);
     }

@@ -98,9 +98,7 @@ def mark() -> Path:
 
 def call_kernels() -> None:
     """Call every kernel on a short wire, with the types of arguments that it always gets."""
-    from disorder_landscape.physics import tilted_field
     from disorder_landscape.physics.finite_temperature import thermal_conductance
 
     wire, mu, B, bias = Nanowire(np.zeros(8)), np.zeros(1), np.zeros(1), np.zeros(1)
     thermal_conductance([wire], mu, B, bias, TEMPERATURE)
-    tilted_field.bare_conductance([wire], mu, np.ones(1), np.zeros(1), 0.5)

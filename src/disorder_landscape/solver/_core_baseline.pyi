@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from disorder_landscape.physics.hamiltonian import ComplexArray
 from disorder_landscape.physics.parameters import FloatArray
 
 TOLERANCE: float
@@ -49,6 +50,7 @@ def reflection_determinant(
     growth_limit: float,
 ) -> FloatArray: ...
 def conductance_gradient(
+def tilted_conductance(
     V: FloatArray,
     parameters: FloatArray,
     mu: FloatArray,
@@ -60,3 +62,27 @@ def conductance_gradient(
     spin_orbit_slope: float,
     growth_limit: float,
 ) -> tuple[FloatArray, FloatArray]: ...
+    theta: float,
+    growth_limit: float,
+) -> FloatArray: ...
+def tilted_determinant(
+    V: FloatArray,
+    parameters: FloatArray,
+    mu: FloatArray,
+    B: FloatArray,
+    omega: FloatArray,
+    theta: float,
+    growth_limit: float,
+) -> FloatArray: ...
+def tilted_isolated_ends(
+    V: FloatArray,
+    parameters: FloatArray,
+    mu: FloatArray,
+    B: FloatArray,
+    x: FloatArray,
+    y: FloatArray,
+    theta: float,
+) -> ComplexArray: ...
+def tilted_leads(
+    V: FloatArray, parameters: FloatArray, B: float, omega: FloatArray, theta: float
+) -> ComplexArray: ...

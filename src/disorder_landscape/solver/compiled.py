@@ -17,6 +17,10 @@ from numpy.typing import NDArray
 from disorder_landscape.arguments import require
 from disorder_landscape.physics.parameters import BOLTZMANN, FloatArray, Nanowire
 
+
+from disorder_landscape.physics.hamiltonian import ComplexArray
+from disorder_landscape.physics.parameters import FloatArray, Nanowire
+
 if TYPE_CHECKING:
     from types import ModuleType
 
@@ -92,6 +96,10 @@ pivoting is trusted: see core/wire/elimination.hpp."""
 
 def handed_over(wires: Sequence[Nanowire]) -> tuple[FloatArray, FloatArray]:
     """Return V with barriers, (wire, site), and the parameters in the order of the core's Wire."""
+
+
+def _handed_over(wires: Sequence[Nanowire]) -> tuple[FloatArray, FloatArray]:
+    """Return V with barriers, (wire, site), and parameters in the order of core's Wire."""
     V = np.array([w.potential_with_barriers for w in wires])
     parameters = [
         (
@@ -220,3 +228,49 @@ def conductance_gradient(
         growth_limit,
     )
     return by_V, others
+
+
+def tilted_conductance(
+    wires: Sequence[Nanowire],
+    mu: FloatArray,
+    B: FloatArray,
+    omega: FloatArray,
+    theta: float,
+    growth_limit: float = GROWTH_LIMIT,
+) -> FloatArray:
+    """Return the same as `complex_conductance` in a field at the angle θ."""
+    G: FloatArray = core.tilted_conductance(*_handed_over(wires), mu, B, omega, theta, growth_limit)
+    return G
+
+
+def tilted_determinant(
+    wires: Sequence[Nanowire], mu: FloatArray, B: FloatArray, theta: float
+) -> FloatArray:
+    """Return the same as `reflection_determinant` in a field at the angle θ."""
+    T: FloatArray = core.tilted_determinant(
+        *_handed_over(wires), mu, B, np.zeros(1), theta, GROWTH_LIMIT
+    )
+    return T
+
+
+def tilted_isolated_ends(
+    wires: Sequence[Nanowire], mu: FloatArray, B: FloatArray, z: ComplexArray, theta: float
+) -> ComplexArray:
+    """Return G of the ends of the wires without leads in a field at the angle θ, in 1/meV.
+
+    In the rotated frame, left end first, at energies z with |Re z| < Δ₀ and Im z > 0; without
+    the wires' dissipation.
+
+    Returns
+    -------
+    array, shape (wire, B, mu, z, 8, 8)
+    """
+    x, y = np.ascontiguousarray(z.real), np.ascontiguousarray(z.imag)
+    G: ComplexArray = core.tilted_isolated_ends(*_handed_over(wires), mu, B, x, y, theta)
+    return G
+
+
+def tilted_leads(wire: Nanowire, B: float, omega: FloatArray, theta: float) -> ComplexArray:
+    """Return Σ of the leads, shape (energy, lead, charge, 2, 2), in meV, in a tilted field."""
+    sigma: ComplexArray = core.tilted_leads(*_handed_over([wire]), B, omega, theta)
+    return sigma
