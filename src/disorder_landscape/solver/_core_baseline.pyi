@@ -50,7 +50,6 @@ def reflection_determinant(
     growth_limit: float,
 ) -> FloatArray: ...
 def conductance_gradient(
-def tilted_conductance(
     V: FloatArray,
     parameters: FloatArray,
     mu: FloatArray,
@@ -62,6 +61,12 @@ def tilted_conductance(
     spin_orbit_slope: float,
     growth_limit: float,
 ) -> tuple[FloatArray, FloatArray]: ...
+def tilted_conductance(
+    V: FloatArray,
+    parameters: FloatArray,
+    mu: FloatArray,
+    B: FloatArray,
+    omega: FloatArray,
     theta: float,
     growth_limit: float,
 ) -> FloatArray: ...
