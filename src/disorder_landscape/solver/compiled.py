@@ -30,6 +30,10 @@ __all__ = [
     "real_conductance",
     "reflection_determinant",
     "thermal_conductance",
+    "tilted_conductance",
+    "tilted_determinant",
+    "tilted_isolated_ends",
+    "tilted_leads",
 ]
 
 CHOICE = "DISORDER_LANDSCAPE_CORE"
@@ -93,10 +97,6 @@ pivoting is trusted: see core/wire/elimination.hpp."""
 
 def handed_over(wires: Sequence[Nanowire]) -> tuple[FloatArray, FloatArray]:
     """Return V with barriers, (wire, site), and the parameters in the order of the core's Wire."""
-
-
-def _handed_over(wires: Sequence[Nanowire]) -> tuple[FloatArray, FloatArray]:
-    """Return V with barriers, (wire, site), and parameters in the order of core's Wire."""
     V = np.array([w.potential_with_barriers for w in wires])
     parameters = [
         (
@@ -236,7 +236,7 @@ def tilted_conductance(
     growth_limit: float = GROWTH_LIMIT,
 ) -> FloatArray:
     """Return the same as `complex_conductance` in a field at the angle θ."""
-    G: FloatArray = core.tilted_conductance(*_handed_over(wires), mu, B, omega, theta, growth_limit)
+    G: FloatArray = core.tilted_conductance(*handed_over(wires), mu, B, omega, theta, growth_limit)
     return G
 
 
@@ -245,7 +245,7 @@ def tilted_determinant(
 ) -> FloatArray:
     """Return the same as `reflection_determinant` in a field at the angle θ."""
     T: FloatArray = core.tilted_determinant(
-        *_handed_over(wires), mu, B, np.zeros(1), theta, GROWTH_LIMIT
+        *handed_over(wires), mu, B, np.zeros(1), theta, GROWTH_LIMIT
     )
     return T
 
@@ -263,11 +263,11 @@ def tilted_isolated_ends(
     array, shape (wire, B, mu, z, 8, 8)
     """
     x, y = np.ascontiguousarray(z.real), np.ascontiguousarray(z.imag)
-    G: ComplexArray = core.tilted_isolated_ends(*_handed_over(wires), mu, B, x, y, theta)
+    G: ComplexArray = core.tilted_isolated_ends(*handed_over(wires), mu, B, x, y, theta)
     return G
 
 
 def tilted_leads(wire: Nanowire, B: float, omega: FloatArray, theta: float) -> ComplexArray:
     """Return Σ of the leads, shape (energy, lead, charge, 2, 2), in meV, in a tilted field."""
-    sigma: ComplexArray = core.tilted_leads(*_handed_over([wire]), B, omega, theta)
+    sigma: ComplexArray = core.tilted_leads(*handed_over([wire]), B, omega, theta)
     return sigma
