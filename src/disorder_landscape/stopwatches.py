@@ -11,7 +11,6 @@ from multiprocessing import get_context
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-import numba as nb
 import numpy as np
 
 from disorder_landscape.config import DatasetConfig
@@ -87,13 +86,11 @@ def _seconds(action: Callable[[], object]) -> float:
 @contextmanager
 def threads_at_work(threads: int) -> Iterator[None]:
     """Use so many threads, then as many as before."""
-    before, core_before = nb.get_num_threads(), compiled.core.set_threads(threads)
-    nb.set_num_threads(threads)
+    before = compiled.core.set_threads(threads)
     try:
         yield
     finally:
-        nb.set_num_threads(before)
-        compiled.core.set_threads(core_before)
+        compiled.core.set_threads(before)
 
 
 def peak_memory(config: DatasetConfig) -> float:
@@ -101,8 +98,12 @@ def peak_memory(config: DatasetConfig) -> float:
 
     Linux says so in VmHWM; what `getrusage` says counts the process from which it was started too.
     """
-    with ProcessPoolExecutor(1, get_context("spawn"), nb.set_num_threads, (1,)) as pool:
+    with ProcessPoolExecutor(1, get_context("spawn"), _on_one_thread) as pool:
         return pool.submit(_generate_and_look, config).result()
+
+
+def _on_one_thread() -> None:
+    compiled.core.set_threads(1)
 
 
 def _generate_and_look(config: DatasetConfig) -> float:

@@ -41,12 +41,9 @@ def each_result(
 
 def _start_worker() -> None:
     """Keep a worker to one thread, and leave Ctrl-C to the process that waits for it."""
-    import numba
-
     from disorder_landscape.solver.compiled import core
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    numba.set_num_threads(1)
     core.set_threads(1)
     os.environ.update(dict.fromkeys(THREADS, "1"))
     threading.Thread(target=_end_with_parent, daemon=True).start()

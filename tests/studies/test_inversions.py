@@ -73,7 +73,6 @@ def test_a_table_keeps_what_others_add_to_it(tmp_path, monkeypatch):
     """Two runs that share a table, or one that was interrupted."""
     path, done = tmp_path / "rows.csv", []
     there = "disorder_landscape.studies.rows"
-    monkeypatch.setattr(f"{there}.compile_kernels", lambda: None)
     monkeypatch.setattr(f"{there}.each_result", lambda function, tasks, _: map(function, tasks))
 
     def row_of(task):

@@ -17,7 +17,6 @@ import xarray as xr
 from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
-from disorder_landscape.physics.compilation import compile_kernels
 from disorder_landscape.physics.labels import CONDUCTANCES
 from disorder_landscape.workers import each_result
 
@@ -136,7 +135,6 @@ def generate(
         for shard in missing:
             progress(make_shard(config, folder, shard))
         return
-    compile_kernels()  # here, where Ctrl-C is heard
     for realizations in each_result(partial(make_shard, config, folder), missing, workers):
         progress(realizations)
 

@@ -13,7 +13,6 @@ from tqdm import tqdm
 
 from disorder_landscape.dataset.store import provenance
 from disorder_landscape.files import replacing, write_json
-from disorder_landscape.physics.compilation import compile_kernels
 from disorder_landscape.workers import each_result
 
 Task = TypeVar("Task")
@@ -76,7 +75,6 @@ def complete(
 ) -> None:
     """Carry out the tasks that a table has no row of, and write each row as it comes."""
     left = missing(tasks, read_rows(path, keys), keys)
-    compile_kernels()
     with tqdm(total=len(tasks), initial=len(tasks) - len(left), unit=" wires") as bar:
         for row in each_result(function, left, workers):
             add_rows(pd.DataFrame([row]), path, keys, command)
