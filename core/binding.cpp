@@ -160,11 +160,12 @@ ComplexArray ends_of_isolated(Matrix V, Matrix parameters, Vector mu, Vector B, 
 }
 
 // Of the first wire, shape (energy, lead, charge, 2, 2), in meV.
-ComplexArray tilted_leads(Matrix V, Matrix parameters, double B, Vector omega, double theta) {
+ComplexArray lead_self_energies(Matrix V, Matrix parameters, double B, Vector omega, double theta) {
     Wire wire = wires_of(V, parameters)[0];
     auto out = new_array<Amplitude>({omega.size(), 2, 2, 2, 2});
     for (size_t e = 0; e < omega.size(); ++e) {
-        LeadSelfEnergy sigma = tilted_self_energy_of_leads(wire, B, omega.data()[e], theta);
+        double w = omega.data()[e];
+        LeadSelfEnergy sigma = theta == 0 ? self_energy_of_leads(wire, B, w) : tilted_self_energy_of_leads(wire, B, w, theta);
         for (size_t k = 0; k < 16; ++k) out.data()[16 * e + k] = sigma.of[k / 4](k / 2 % 2, k % 2);
     }
     return out;
@@ -198,6 +199,6 @@ NB_MODULE(CORE_MODULE, m) {
           nb::arg("mu"), nb::arg("B"), nb::arg("omega"), nb::arg("theta"), nb::arg("growth_limit"));
     m.def("tilted_isolated_ends", &ends_of_isolated, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"),
           nb::arg("B"), nb::arg("x"), nb::arg("y"), nb::arg("theta"));
-    m.def("tilted_leads", &tilted_leads, nb::arg("V"), nb::arg("parameters"), nb::arg("B"), nb::arg("omega"),
+    m.def("lead_self_energies", &lead_self_energies, nb::arg("V"), nb::arg("parameters"), nb::arg("B"), nb::arg("omega"),
           nb::arg("theta"));
 }

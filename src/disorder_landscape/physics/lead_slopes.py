@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from disorder_landscape.physics.hamiltonian import PAULI, ComplexArray
-from disorder_landscape.physics.leads import lead_self_energies
 from disorder_landscape.physics.parameters import FloatArray, Nanowire
+from disorder_landscape.solver.compiled import lead_self_energies
 
 
 def lead_slopes(
@@ -25,7 +25,7 @@ def lead_slopes(
     omega : array, shape (energy,)
         Energies in meV.
     sigma : array, shape (B, energy, lead, charge, 2, 2)
-        What `leads.lead_self_energies` gives for them, in meV.
+        What `compiled.lead_self_energies` gives for them, in meV.
 
     Returns
     -------

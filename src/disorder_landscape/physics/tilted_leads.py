@@ -30,4 +30,4 @@ def tilted_lead_self_energies(
     array, shape (energy, lead, charge, 2, 2)
         In meV; lead = L, R, charge = electron, hole, then spin.
     """
-    return compiled.tilted_leads(wire, B, omega, theta)
+    return compiled.lead_self_energies(wire, B, omega, theta)

@@ -88,6 +88,6 @@ def tilted_isolated_ends(
     y: FloatArray,
     theta: float,
 ) -> ComplexArray: ...
-def tilted_leads(
+def lead_self_energies(
     V: FloatArray, parameters: FloatArray, B: float, omega: FloatArray, theta: float
 ) -> ComplexArray: ...

@@ -27,13 +27,13 @@ __all__ = [
     "complex_conductance",
     "conductance_gradient",
     "core",
+    "lead_self_energies",
     "real_conductance",
     "reflection_determinant",
     "thermal_conductance",
     "tilted_conductance",
     "tilted_determinant",
     "tilted_isolated_ends",
-    "tilted_leads",
 ]
 
 CHOICE = "DISORDER_LANDSCAPE_CORE"
@@ -267,7 +267,9 @@ def tilted_isolated_ends(
     return G
 
 
-def tilted_leads(wire: Nanowire, B: float, omega: FloatArray, theta: float) -> ComplexArray:
-    """Return Σ of the leads, shape (energy, lead, charge, 2, 2), in meV, in a tilted field."""
-    sigma: ComplexArray = core.tilted_leads(*handed_over([wire]), B, omega, theta)
+def lead_self_energies(
+    wire: Nanowire, B: float, omega: FloatArray, theta: float = 0.0
+) -> ComplexArray:
+    """Return Σ of the leads, shape (energy, lead, charge, 2, 2), in meV, spin not rotated."""
+    sigma: ComplexArray = core.lead_self_energies(*handed_over([wire]), B, omega, theta)
     return sigma
