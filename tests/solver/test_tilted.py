@@ -84,7 +84,7 @@ def test_every_variant_gives_the_same(monkeypatch):
             compiled.tilted_conductance(wires, mu, B, omega, theta),
             compiled.tilted_determinant(wires, mu, B, theta),
             compiled.tilted_isolated_ends(wires, mu, B, z, theta),
-            np.array([compiled.tilted_leads(wires[0], field, omega, theta) for field in B]),
+            np.array([compiled.lead_self_energies(wires[0], field, omega, theta) for field in B]),
         )
     for name, found in results.items():
         for ours, best in zip(found, results[compiled.supported()[-1]], strict=True):
