@@ -50,26 +50,11 @@ struct ThermalField {
             Symmetric8<Complex<double>> M;
             for (int i = 0; i < 8; ++i)
                 for (int j = i; j < 8; ++j) M(i, j) = {sigma(i, j).real() * hop, sigma(i, j).imag() * hop};
-            chiral(M);
+            to_chiral(M);
             for (int i = 0; i < 8; ++i)
                 for (int j = 0; j < 8; ++j) at[k](i, j) = {M(i, j).re, M(i, j).im};
         }
         return Leads(plan.cubic, at);
-    }
-
-    static void chiral(Symmetric8<Complex<double>>& M) {
-        for (auto part : {&Complex<double>::re, &Complex<double>::im}) {  // it is a real transformation
-            double X[8][8], row[8], turned[8];
-            for (int i = 0; i < 8; ++i) {
-                for (int j = 0; j < 8; ++j) row[j] = M(i, j).*part;
-                turn_chiral(row, X[i]);
-            }
-            for (int j = 0; j < 8; ++j) {
-                for (int i = 0; i < 8; ++i) row[i] = X[i][j];
-                turn_chiral(row, turned);
-                for (int i = 0; i <= j; ++i) M(i, j).*part = turned[i];
-            }
-        }
     }
 };
 
@@ -143,7 +128,7 @@ inline void solve_checks(const ThermalField& field, const EnergyPlan& plan, cons
             of.bare[plan.nodes + check] = lane_of(bare, l);
             auto& green = of.green[check];
             for (int k = 0; k < 36; ++k) green.entry[k] = {G.entry[k].re[l] / field.hop, G.entry[k].im[l] / field.hop};
-            ThermalField::chiral(green);
+            to_chiral(green);
         }
     }
 }
