@@ -38,6 +38,17 @@ CORE_INLINE Block4<R> unit(double size) {
     return block;
 }
 
+// A − τz X τz.
+template <class R>
+CORE_INLINE Symmetric4<R> minus_hopped(const Symmetric4<R>& A, const Symmetric4<R>& X) {
+    Symmetric4<R> D;
+#pragma GCC unroll 4
+    for (int i = 0; i < 4; ++i)
+#pragma GCC unroll 4
+        for (int j = 0; j <= i; ++j) D(i, j) = (i < 2) == (j < 2) ? A(i, j) - X(i, j) : A(i, j) + X(i, j);
+    return D;
+}
+
 // −D⁻¹ τz times the wave at the neighbour.
 template <class R>
 CORE_INLINE Block4<R> carried(const Factors4<R>& D, const Block4<R>& wave) {

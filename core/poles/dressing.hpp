@@ -2,18 +2,17 @@
 //
 // With the levels ±E of the isolated wire and what the ends see of them, U (levels.hpp),
 //
-//     G_iso(z) = U (z − E)⁻¹ Uᵀ,   S(z) = Σ(z)⁻¹,   M = S − G_iso,
+//     G_iso(z) = U (z − E)⁻¹ Uᵀ + G_far(z),   S(z) = Σ(z)⁻¹,   M = S − G_iso,
 //
-// G_iso and S complex symmetric 8×8 in the chiral basis, S a cubic in the energy.  M carries all that the
-// leads do: (z − H)⁻¹ = R + R Uᵀ M⁻¹ U R with R = (z − E)⁻¹, and G = S M⁻¹ S − S.  It is factored without
-// pivots: its entries stay of order 1/Σ, also at the poles, because a level couples to the leads by the
-// same U by which it stands in G_iso.
+// all complex symmetric 8×8 in the chiral basis, S a cubic in the energy, and G_far, of the levels far outside
+// the window, a polynomial (far.hpp).  M carries all that the leads do: (z − H)⁻¹ = R + R Uᵀ M⁻¹ U R with
+// R = (z − E)⁻¹, and G = S M⁻¹ S − S.  It is factored without pivots: its entries stay of order 1/Σ, also at
+// the poles, because a level couples to the leads by the same U by which it stands in G_iso.
 #pragma once
 
 #include "../leads/self_energy.hpp"
 #include "../wire/pivoted.hpp"
-#include "chiral.hpp"
-#include "levels.hpp"
+#include "far.hpp"
 
 namespace core {
 
@@ -22,36 +21,24 @@ using PoleReal = Lanes<POLES>;
 using PoleComplex = Complex<PoleReal>;
 using Ends8 = std::array<PoleComplex, 8>;
 
-constexpr int UPPER = 36;
-// Where entry (i, j) of a symmetric matrix stands: C = ++ (10), −− (10), then +− (16).
-constexpr int place(int i, int j) {
-    int a = i < j ? i : j, b = i < j ? j : i;
-    auto triangle = [](int p, int q) { return 4 * p - p * (p - 1) / 2 + q - p; };
-    return b < 4 ? triangle(a, b) : a >= 4 ? 10 + triangle(a - 4, b - 4) : 20 + 4 * a + b - 4;
-}
-constexpr auto PLACES = [] {
-    std::array<std::array<int, 8>, 8> at{};
-    for (int i = 0; i < 8; ++i)
-        for (int j = 0; j < 8; ++j) at[i][j] = place(i, j);
-    return at;
-}();
-
 // The levels as the sums here take them.
 struct Levels {
     std::vector<double> E;
     std::vector<std::array<double, 8>> weight;        // of ±E: with C = +1, over √2, and C = −1
     std::vector<std::array<double, UPPER>> products;  // entries of w wᵀ, by PLACES
+    FarLevels far;
 
-    explicit Levels(const LevelList& of) : E(of.size()), weight(of.size()), products(of.size()) {
-        for (size_t n = 0; n < of.size(); ++n) {
-            E[n] = of[n].E;
-            for (int i = 0; i < 8; ++i) {
-                weight[n][i] = std::sqrt(0.5) * of[n].w[i];
-                for (int j = i; j < 8; ++j) products[n][PLACES[i][j]] = of[n].w[i] * of[n].w[j];
+    Levels(const LevelList& of, double window) : far(of, window) {
+        for (const Level& level : of)
+            if (!far.takes(level)) {
+                E.push_back(level.E);
+                weight.emplace_back();
+                for (int i = 0; i < 8; ++i) weight.back()[i] = std::sqrt(0.5) * level.w[i];
+                products.push_back(products_of(level));
             }
-        }
     }
     int size() const { return int(E.size()); }
+    double coupling(int n) const { return 2 * detail::square(weight[n].data(), 8); }
 };
 
 // A cubic in the energy of 4×4 blocks, one at each end: coefficients of 1, ω, ω², ω³.
@@ -131,9 +118,9 @@ struct Leads {
     }
 };
 
-// Values and slopes of a cubic at several energies: ten entries per end.
+// Values of a cubic at several energies: ten entries per end.
 struct CubicValues {
-    PoleComplex value[20], slope[20];
+    PoleComplex value[20];
 
     void fill(const Cubic& cubic, PoleComplex z) {
         auto same = [](Amplitude x) { return PoleComplex(PoleReal(x.real()), PoleReal(x.imag())); };
@@ -141,12 +128,9 @@ struct CubicValues {
         for (int end = 0; end < 2; ++end)
             for (int i = 0; i < 4; ++i)
                 for (int j = i; j < 4; ++j, ++at) {
-                    PoleComplex a = same(cubic.of[3][end][i][j]);
-                    PoleComplex p = same(cubic.of[2][end][i][j]) + a * z;       // az + b
-                    PoleComplex q = same(cubic.of[1][end][i][j]) + p * z;       // az² + bz + c
-                    value[at] = same(cubic.of[0][end][i][j]) + q * z;
-                    p = p + a * z;  // 2az + b
-                    slope[at] = q + p * z;
+                    PoleComplex total = same(cubic.of[3][end][i][j]);
+                    for (int power = 2; power >= 0; --power) total = same(cubic.of[power][end][i][j]) + total * z;
+                    value[at] = total;
                 }
     }
     // y = S x.
@@ -160,18 +144,39 @@ struct CubicValues {
     }
 };
 
-// 1/(z ∓ E) of every level.
+// tᵀ S' t at z.
+inline PoleComplex slope_between(const Cubic& cubic, const Ends8& t, PoleComplex z) {
+    PoleComplex of[4] = {0.0, 0.0, 0.0, 0.0};
+    for (int end = 0; end < 2; ++end)
+        for (int i = 0; i < 4; ++i)
+            for (int j = i; j < 4; ++j) {
+                PoleComplex pair = t[ENDS[end][i]] * t[ENDS[end][j]];
+                if (i != j) pair = pair + pair;
+                for (int power = 1; power < 4; ++power) {
+                    Amplitude c = cubic.of[power][end][i][j];
+                    of[power] = of[power] + pair * PoleComplex(PoleReal(c.real()), PoleReal(c.imag()));
+                }
+            }
+    PoleComplex twice = of[2] + of[2], thrice = of[3] + of[3] + of[3], rest = twice + thrice * z;
+    return of[1] + rest * z;
+}
+
+// 1/(z ∓ E) of every level, and their sum and difference.
 struct Resolvents {
-    std::vector<PoleComplex> up, down;  // 1/(z − E), 1/(z + E)
-    explicit Resolvents(int levels) : up(levels), down(levels) {}
+    struct OfLevel {
+        PoleComplex up, down, even, odd;  // 1/(z − E), 1/(z + E)
+    };
+    std::vector<OfLevel> of;
+    explicit Resolvents(int levels) : of(levels) {}
 
     void fill(PoleComplex z, const std::vector<double>& E) {
         PoleReal square = z.im * z.im, minus = -z.im;
         for (size_t n = 0; n < E.size(); ++n) {
             PoleReal below = z.re - E[n], above = z.re + E[n];
-            PoleReal near = inverse(square + below * below), far = inverse(square + above * above);
-            up[n] = PoleComplex(below * near, minus * near);
-            down[n] = PoleComplex(above * far, minus * far);
+            PoleReal near = square + below * below, far = square + above * above;
+            PoleReal over = inverse(PoleReal(near * far)), over_near = far * over, over_far = near * over;
+            PoleComplex up(below * over_near, minus * over_near), down(above * over_far, minus * over_far);
+            of[n] = {up, down, up + down, up - down};
         }
     }
 };
@@ -180,15 +185,19 @@ struct Resolvents {
 struct DressedEnds {
     PoleComplex entry[UPPER], over[8];
 
-    void fill(const Levels& levels, const Resolvents& R, const CubicValues& S) {
+    void fill(const Levels& levels, const Resolvents& R, const CubicValues& S, PoleComplex z) {
+        levels.far.fill(z, entry);
         for (int e = 0; e < UPPER; e += 4) {
             PoleComplex total[4] = {0.0, 0.0, 0.0, 0.0};
             for (int n = 0; n < levels.size(); ++n) {
-                PoleComplex both = e < 20 ? R.up[n] + R.down[n] : R.up[n] - R.down[n];
+                const PoleComplex& both = e < SAME ? R.of[n].even : R.of[n].odd;
                 const double* product = &levels.products[n][e];
                 for (int k = 0; k < 4; ++k) total[k] = total[k] + both * PoleReal(product[k]);
             }
-            for (int k = 0; k < 4; ++k) entry[e + k] = -(total[k] * PoleReal(0.5));
+            for (int k = 0; k < 4; ++k) {
+                PoleComplex all = entry[e + k] + total[k] * PoleReal(0.5);
+                entry[e + k] = -all;
+            }
         }
         int at = 0;
         for (int end = 0; end < 2; ++end)

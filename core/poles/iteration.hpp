@@ -27,64 +27,80 @@ constexpr double CONVERGED = 3e-4;
 // POLES poles, and room to work on them.
 class Batch {
     const Levels& levels;
-    std::vector<PoleComplex> up, down, old_up, old_down;  // x over +E and over −E
+    std::vector<PoleComplex> own, old;  // room for x, over +E, then −E
+    PoleComplex* x = nullptr;
+    PoleReal scale{};  // of x, against overflow
     Resolvents R;
 
 public:
     PoleComplex z{}, norm{};
-    PoleReal scale{};  // of x, against overflow
     Ends8 t{};
     CubicValues S;
     DressedEnds M;
 
-    explicit Batch(const Levels& of)
-        : levels(of), up(of.size()), down(of.size()), old_up(of.size()), old_down(of.size()), R(of.size()) {}
+    explicit Batch(const Levels& of) : levels(of), own(2 * of.size()), old(2 * of.size()), R(of.size()) {}
 
     // Factor M = S − G_iso at the energies z.
     void factor_at_energies(const Cubic& inverse) {
         R.fill(z, levels.E);
         S.fill(inverse, z);
-        M.fill(levels, R, S);
+        M.fill(levels, R, S, z);
     }
 
+    // What a pole's residue needs.
     void load(int lane, const Pole& pole) {
-        set(z, lane, pole.z);
-        set(norm, lane, pole.norm);
-        scale.set(lane, 1.0);
+        set(z, lane, pole.z), set(norm, lane, pole.norm);
         for (int i = 0; i < 8; ++i) set(t[i], lane, pole.t[i]);
-        int n = levels.size();
-        for (int k = 0; k < n; ++k) {
-            set(up[k], lane, {pole.x[k], pole.x[n + k]});
-            set(down[k], lane, {pole.x[2 * n + k], pole.x[3 * n + k]});
+    }
+
+    // Take `steps` steps with some of the poles; write how far each was off before the last one.
+    void iterate(std::vector<Pole>& poles, PoleVectors& vectors, const int* which, int count, int steps, const Leads& leads,
+                 double* off) {
+        int block = which[0] / POLES;
+        bool whole = which[0] % POLES == 0 && count == std::min(POLES, int(poles.size()) - which[0]);
+        for (int l = 0; l < count; ++l) whole = whole && which[l] == which[0] + l;
+        x = whole ? vectors.block(block) : own.data();
+        for (int l = 0; l < POLES; ++l) {
+            int p = which[std::min(l, count - 1)];
+            load(l, poles[p]);
+            if (!whole)
+                for (int k = 0; k < 2 * levels.size(); ++k) set(x[k], l, vectors.get(p, k));
+        }
+        scale = 1.0;
+        for (int step = 0; step < steps; ++step) improve(leads);
+        PoleReal before = 0.0, after = 0.0;
+        for (int k = 0; k < 2 * levels.size(); ++k) {
+            x[k] = x[k] * scale;
+            after = after + x[k].re * x[k].re + x[k].im * x[k].im;
+            before = before + old[k].re * old[k].re + old[k].im * old[k].im;
+        }
+        before = root(PoleReal(before * after)) * scale;
+        for (auto& entry : t) entry = entry * scale;
+        norm = norm * PoleReal(scale * scale);
+        for (int l = 0; l < count; ++l) {
+            Pole& pole = poles[which[l]];
+            pole.z = get(z, l), pole.norm = get(norm, l);
+            for (int i = 0; i < 8; ++i) pole.t[i] = get(t[i], l);
+            if (!whole)
+                for (int k = 0; k < 2 * levels.size(); ++k) vectors.set(which[l], k, get(x[k], l));
+            off[l] = before[l];
         }
     }
 
-    // Take a lane back into its pole; return how far the pole was off before the last step.
-    double take(int lane, Pole& pole) const {
-        int n = levels.size();
-        double factor = scale[lane], before = 0.0, after = 0.0;
-        for (int k = 0; k < n; ++k) {
-            double now[4] = {up[k].re[lane], up[k].im[lane], down[k].re[lane], down[k].im[lane]};
-            double then[4] = {old_up[k].re[lane], old_up[k].im[lane], old_down[k].re[lane], old_down[k].im[lane]};
-            for (int part = 0; part < 4; ++part) {
-                double x = pole.x[part * n + k] = now[part] * factor;
-                after += x * x;
-                before += then[part] * then[part];
-            }
-        }
-        for (int i = 0; i < 8; ++i) pole.t[i] = Amplitude(t[i].re[lane], t[i].im[lane]) * factor;
-        pole.norm = Amplitude(norm.re[lane], norm.im[lane]) * (factor * factor);
-        pole.z = Amplitude(z.re[lane], z.im[lane]);
-        return std::sqrt(before * after) * factor;
+    static void set(PoleComplex& x, int lane, Amplitude value) {
+        x.re.set(lane, value.real());
+        x.im.set(lane, value.imag());
     }
+    static Amplitude get(const PoleComplex& x, int lane) { return {x.re[lane], x.im[lane]}; }
 
-    // Improve the poles and their vectors.
-    void step(const Leads& leads) {
+private:
+    // Improve the poles and their vectors by one step.
+    void improve(const Leads& leads) {
         factor_at_energies(leads.inverse);
         apply_resolvent();
         M.solve(t);
         PoleComplex overlap = add_mixed();
-        add_slope();
+        norm = norm + slope_between(leads.inverse, t, z) - levels.far.slope_between(t, t, z);
         PoleComplex shift = overlap * inverse(norm);
         z.re = z.re - shift.re;
         PoleReal below = z.im - shift.im, least = -1e-16;
@@ -92,50 +108,39 @@ public:
         scale = inverse(root(root(square(norm))));
     }
 
-    static void set(PoleComplex& x, int lane, Amplitude value) {
-        x.re.set(lane, value.real());
-        x.im.set(lane, value.imag());
-    }
-
-private:
     // x ← R x, t ← U R x.
     void apply_resolvent() {
-        for (auto& entry : t) entry = PoleComplex(0.0);
-        for (int n = 0; n < levels.size(); ++n) {
-            old_up[n] = up[n] * scale, old_down[n] = down[n] * scale;
-            up[n] = old_up[n] * R.up[n], down[n] = old_down[n] * R.down[n];
-            PoleComplex even = up[n] + down[n], odd = up[n] - down[n];
-            for (int i = 0; i < 4; ++i) t[i] = t[i] + even * PoleReal(levels.weight[n][i]);
-            for (int i = 4; i < 8; ++i) t[i] = t[i] + odd * PoleReal(levels.weight[n][i]);
+        Ends8 sum;
+        sum.fill(PoleComplex(0.0));
+        for (int n = 0, half = levels.size(); n < half; ++n) {
+            PoleComplex up = x[n] * scale, down = x[half + n] * scale;
+            old[n] = up, old[half + n] = down;
+            up = up * R.of[n].up, down = down * R.of[n].down;
+            x[n] = up, x[half + n] = down;
+            PoleComplex even = up + down, odd = up - down;
+            const auto& weight = levels.weight[n];
+            for (int i = 0; i < 4; ++i) sum[i] = sum[i] + even * PoleReal(weight[i]);
+            for (int i = 4; i < 8; ++i) sum[i] = sum[i] + odd * PoleReal(weight[i]);
         }
+        t = sum;
     }
 
     // x ← x + R Uᵀ t; the norm becomes xᵀx.  Return xᵀx_old.
     PoleComplex add_mixed() {
+        const Ends8 added = t;
         PoleComplex overlap(0.0), total(0.0);
-        for (int n = 0; n < levels.size(); ++n) {
+        for (int n = 0, half = levels.size(); n < half; ++n) {
             PoleComplex first(0.0), second(0.0);
-            for (int i = 0; i < 4; ++i) first = first + t[i] * PoleReal(levels.weight[n][i]);
-            for (int i = 4; i < 8; ++i) second = second + t[i] * PoleReal(levels.weight[n][i]);
-            up[n] = up[n] + (first + second) * R.up[n];
-            down[n] = down[n] + (first - second) * R.down[n];
-            total = total + up[n] * up[n] + down[n] * down[n];
-            overlap = overlap + up[n] * old_up[n] + down[n] * old_down[n];
+            const auto& weight = levels.weight[n];
+            for (int i = 0; i < 4; ++i) first = first + added[i] * PoleReal(weight[i]);
+            for (int i = 4; i < 8; ++i) second = second + added[i] * PoleReal(weight[i]);
+            PoleComplex up = x[n] + (first + second) * R.of[n].up, down = x[half + n] + (first - second) * R.of[n].down;
+            x[n] = up, x[half + n] = down;
+            total = total + up * up + down * down;
+            overlap = overlap + up * old[n] + down * old[half + n];
         }
         norm = total;
         return overlap;
-    }
-
-    // Add tᵀS't to the norm.
-    void add_slope() {
-        int at = 0;
-        for (int end = 0; end < 2; ++end)
-            for (int i = 0; i < 4; ++i)
-                for (int j = i; j < 4; ++j, ++at) {
-                    PoleComplex pair = t[ENDS[end][i]] * t[ENDS[end][j]];
-                    norm = norm + S.slope[at] * pair;
-                    if (i != j) norm = norm + S.slope[at] * pair;
-                }
     }
 };
 
@@ -152,17 +157,14 @@ inline double isolation(const std::vector<Pole>& poles, size_t p) {
 }
 
 // Iterate the active poles in place.  The norm of a pole that does not converge is NaN.
-inline void iterate(std::vector<Pole>& poles, std::vector<int> active, const Leads& leads, Batch& batch) {
+inline void iterate(std::vector<Pole>& poles, PoleVectors& vectors, std::vector<int> active, const Leads& leads, Batch& batch) {
+    std::vector<double> off(active.size());
     for (int round = 0; round < ROUNDS && !active.empty(); ++round) {
-        std::vector<double> off;
-        for (size_t first = 0; first < active.size(); first += POLES) {
-            size_t some = std::min(size_t(POLES), active.size() - first);
-            for (size_t l = 0; l < POLES; ++l) batch.load(int(l), poles[active[first + std::min(l, some - 1)]]);
-            for (int step = 0; step < STEPS; ++step) batch.step(leads);
-            for (size_t l = 0; l < some; ++l) off.push_back(batch.take(int(l), poles[active[first + l]]));
-        }
+        int count = int(active.size());
+        for (int first = 0; first < count; first += POLES)
+            batch.iterate(poles, vectors, &active[first], std::min(POLES, count - first), STEPS, leads, &off[first]);
         std::vector<int> left;  // once all have moved, so that batches of any size end alike
-        for (size_t k = 0; k < active.size(); ++k) {
+        for (int k = 0; k < count; ++k) {
             int p = active[k];
             if (!(off[k] <= CONVERGED * (FAINT + std::min(-poles[p].z.imag(), isolation(poles, p))))) left.push_back(p);
         }

@@ -23,8 +23,8 @@ struct NodeData {
 };
 
 struct Pencil {
-    int n = 0, rank = 0;
-    std::vector<double> A;     // (rank, n): row k holds columns rank − 1 down to 0 of the matrix
+    int n = 0, rank = 0, width = 0;
+    std::vector<double> A;     // (rank, width): row k holds columns rank − 1 down to 0 of the matrix
     std::vector<double> rows;  // (rank, 8), what the ends see
 
     // omega: the nodes in meV.
@@ -33,6 +33,10 @@ struct Pencil {
         phi.resize(n * 8), norm.resize(n * 8), scale.resize(n);
         rows.assign(n * 8, 0.0);
         for (auto* matrix : {&R, &L, &K, &Y, &A}) matrix->resize(size_t(n) * n);
+        apart.resize(size_t(nodes) * nodes);
+        for (int k = 0; k < nodes; ++k)
+            for (int m = 0; m < nodes; ++m)
+                apart[k * nodes + m] = k == m ? 0.0 : 1.0 / (omega[k] * omega[k] - omega[m] * omega[m]);
         for (int k = 0; k < nodes; ++k) resolvents(omega[k], data[k], phi.data() + 64 * k, norm.data() + 64 * k);
         for (int i = 0; i < n; ++i) scale[i] = 1.0 / std::sqrt(norm[8 * i + i % 8]);
         choose(omega, nodes);
@@ -40,7 +44,7 @@ struct Pencil {
     }
 
 private:
-    std::vector<double> phi, norm, scale, R, L, K, Y;
+    std::vector<double> phi, norm, scale, apart, R, L, K, Y;  // apart: 1/(x_k − x_m)
 
     // Φ − diag(0, 1) and −dΦ/dx.
     static void resolvents(double w, const NodeData& at, double* phi, double* norm) {
@@ -68,8 +72,7 @@ private:
         Columns own = Columns::load(&phi[8 * d]);
         for (int k = 0; k < nodes; ++k) {
             Columns other = Columns::load(&phi[64 * k + 8 * i]);
-            double over = k == own_node ? 0.0 : 1.0 / (omega[k] * omega[k] - x);
-            Columns product = over * (own - other);
+            Columns product = apart[k * nodes + own_node] * (own - other);
             if (k == own_node) product = Columns::load(&norm[8 * d]);
             Columns factor = scale[d] * Columns::load(&scale[8 * k]);
             Columns overlap = product * factor, energy = (x * product - other) * factor;
@@ -77,15 +80,29 @@ private:
         }
     }
 
+    // The place of the largest entry, the first of equal ones, or −1 where none is above DROP.
+    static int largest(const std::vector<double>& of) {
+        Columns best = DROP, at = -1.0;
+        for (int j = 0; j < int(of.size()); j += COLUMNS) {
+            Columns entry = Columns::load(&of[j]);
+            at = where_greater(entry, best, Columns(j), at);
+            best = larger(best, entry);
+        }
+        int found = -1;
+        double most = DROP;
+        for (int l = 0; l < COLUMNS; ++l) {
+            int here = int(at[l]) + l;
+            if (at[l] >= 0.0 && (best[l] > most || (best[l] == most && here < found))) most = best[l], found = here;
+        }
+        return found;
+    }
+
     void choose(const double* omega, int nodes) {
         std::vector<double> pivots(n, 1.0), energy(n);
         std::vector<int> order;
         rank = 0;
         for (int k = 0; k < n; ++k) {
-            int d = -1;
-            double best = DROP;
-            for (int i = 0; i < n; ++i)
-                if (pivots[i] > best) best = pivots[i], d = i;
+            int d = largest(pivots);
             if (d < 0) break;
             double* row = &R[size_t(k) * n];
             double *l = &L[size_t(k) * n], *of_K = &K[size_t(k) * n];
@@ -101,31 +118,32 @@ private:
                 Columns entry = Columns::load(row + j), left = Columns::load(&pivots[j]) - entry * entry;
                 left.store(&pivots[j]);
             }
-            for (int i : order) pivots[i] = -1.0;
+            pivots[d] = -1.0;
             rank = k + 1;
         }
     }
 
     void reduce() {
         int r = rank;
+        width = padded(r);
         for (int k = 0; k < r; ++k) {
-            double *y = &Y[size_t(k) * n], *l = &L[size_t(k) * n];
+            double *y = &Y[size_t(k) * width], *l = &L[size_t(k) * n];
             for (int j = 0; j < r; ++j) y[j] = j <= k ? K[size_t(k) * n + j] : K[size_t(j) * n + k];
-            for (int j = r; j < padded(r); ++j) y[j] = 0.0;
-            subtract_rows(y, Y.data(), n, l, k, padded(r));
+            for (int j = r; j < width; ++j) y[j] = 0.0;
+            subtract_rows(y, Y.data(), width, l, k, width);
             subtract_rows(&rows[8 * k], rows.data(), 8, l, k, 8);
-            scale_row(y, 1.0 / l[k], padded(r));
+            scale_row(y, 1.0 / l[k], width);
             scale_row(&rows[8 * k], 1.0 / l[k], 8);
         }
         for (int k = 0; k < r; ++k) {
-            double *a = &A[size_t(k) * n], *l = &L[size_t(k) * n];
-            int width = padded(r - k);
-            for (int c = 0; c < width; ++c) a[c] = c < r ? Y[size_t(r - 1 - c) * n + k] : 0.0;
-            subtract_rows(a, A.data(), n, l, k, width);
-            scale_row(a, 1.0 / l[k], width);
+            double *a = &A[size_t(k) * width], *l = &L[size_t(k) * n];
+            int part = padded(r - k);
+            for (int c = 0; c < part; ++c) a[c] = c < r ? Y[size_t(r - 1 - c) * width + k] : 0.0;
+            subtract_rows(a, A.data(), width, l, k, part);
+            scale_row(a, 1.0 / l[k], part);
         }
         for (int k = 0; k < r; ++k)  // the other triangle
-            for (int c = 0; c < r - 1 - k; ++c) A[size_t(r - 1 - c) * n + r - 1 - k] = A[size_t(k) * n + c];
+            for (int c = 0; c < r - 1 - k; ++c) A[size_t(r - 1 - c) * width + r - 1 - k] = A[size_t(k) * width + c];
     }
 };
 

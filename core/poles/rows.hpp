@@ -16,6 +16,12 @@ CORE_INLINE double sum(Columns x) {
     return ((part[0] + part[4]) + (part[2] + part[6])) + ((part[1] + part[5]) + (part[3] + part[7]));
 }
 
+inline double dot(const double* a, const double* b, int width) {
+    Columns total = 0.0;
+    for (int j = 0; j < width; j += COLUMNS) total = total + Columns::load(a + j) * Columns::load(b + j);
+    return sum(total);
+}
+
 template <int BLOCKS>
 CORE_INLINE void subtract_rows_from(double* target, const double* rows, int stride, const double* factors, int count) {
     Columns total[BLOCKS];

@@ -48,24 +48,18 @@ CORE_INLINE void update_and_multiply(double* A, std::ptrdiff_t stride, int m, in
     for (int b = 0; b < BLOCKS; ++b) total[b].store(product + first + b * COLUMNS);
 }
 
-inline double dot(const double* a, const double* b, int width) {
-    Columns total = 0.0;
-    for (int j = 0; j < width; j += COLUMNS) total = total + Columns::load(a + j) * Columns::load(b + j);
-    return sum(total);
-}
-
 }  // namespace detail
 
 // Tridiagonalise the pencil's A, destroyed, into lane `set` of T.
 inline void tridiagonalise(Pencil& pencil, Tridiagonal& T, int set) {
     // Entry m here is entry k = r − 1 − m of the pencil, so that active rows and columns start at 0.
-    int r = pencil.rank, n = pencil.n, width = padded(r);
-    double* A = &pencil.A[size_t(r - 1) * n];
+    int r = pencil.rank, width = pencil.width;
+    double* A = &pencil.A[size_t(r - 1) * width];
     auto seen = [&](int m) { return &pencil.rows[8 * (r - 1 - m)]; };
     std::vector<double> v(width), p(width), next(width), product(width);
     for (int m = r - 1; m >= 0; --m) {
         int k = r - 1 - m, active = padded(m);
-        double* row = A - std::ptrdiff_t(m) * n;
+        double* row = A - std::ptrdiff_t(m) * width;
         for (int j = 0; j < padded(m + 1); j += COLUMNS) {
             Columns entry = Columns::load(row + j) - v[m] * Columns::load(&p[j]) - p[m] * Columns::load(&v[j]);
             entry.store(row + j);
@@ -74,17 +68,17 @@ inline void tridiagonalise(Pencil& pencil, Tridiagonal& T, int set) {
         if (m == 0) break;
         double head = row[m - 1];
         for (int c = 0; c < width; ++c) next[c] = c < m - 1 ? row[c] : 0.0;
-        double tail = detail::dot(next.data(), next.data(), active), norm = std::sqrt(tail + head * head);
+        double tail = dot(next.data(), next.data(), active), norm = std::sqrt(tail + head * head);
         double alpha = !(tail > 0) ? head : head > 0 ? -norm : norm;
         double beta = tail > 0 ? 1.0 / (norm * (norm + std::abs(head))) : 0.0;
         T.off[k].set(set, alpha);
         next[m - 1] = head - alpha;
         int j = 0;
         for (; j + 2 * COLUMNS <= active; j += 2 * COLUMNS)
-            detail::update_and_multiply<2>(A, -std::ptrdiff_t(n), m, j, v.data(), p.data(), next.data(), product.data());
-        if (j < active) detail::update_and_multiply<1>(A, -std::ptrdiff_t(n), m, j, v.data(), p.data(), next.data(), product.data());
+            detail::update_and_multiply<2>(A, -std::ptrdiff_t(width), m, j, v.data(), p.data(), next.data(), product.data());
+        if (j < active) detail::update_and_multiply<1>(A, -std::ptrdiff_t(width), m, j, v.data(), p.data(), next.data(), product.data());
         for (int c = m; c < active; ++c) product[c] = 0.0;
-        double overlap = 0.5 * beta * beta * detail::dot(product.data(), next.data(), active);
+        double overlap = 0.5 * beta * beta * dot(product.data(), next.data(), active);
         Columns even = 0.0, odd = 0.0;
         for (int c = 0; c < m; ++c) {
             v[c] = next[c];

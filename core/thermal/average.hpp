@@ -27,9 +27,12 @@ inline double largest(double a, double b) { return !(b <= a) ? b : a; }  // so t
 
 // What part of a difference at a check the average can have: a pole misplaced by δ shows as v²δ/(ω − z)² and
 // counts as v²δ/(kT)² in the average, so a difference is scaled down where a pole is nearer than kT.
-inline double share_that_counts(double omega, double kT, const std::vector<Term>& terms) {
+inline double share_that_counts(double omega, double kT, const PoleTerms& terms) {
     double nearest = kT * kT;
-    for (const Term& term : terms) nearest = std::min(nearest, std::norm(omega - term.z));
+    for (int n = 0; n < terms.count; ++n) {
+        double along = omega - terms.x[n];
+        nearest = std::min(nearest, along * along + terms.y[n] * terms.y[n]);
+    }
     return nearest / (kT * kT);
 }
 
@@ -55,12 +58,12 @@ inline double mismatch(const double (&checks)[COMPARED], const double (&shares)[
                 PoleComplex G = b.M.add_product(f[i], f[j], -same_end[j][i]);
                 for (int l = 0; l < POLES && first + l < COMPARED; ++l) {
                     Complex<double> exact = data.green[first + l](i, j);
-                    Amplitude off(G.re[l] - exact.re, G.im[l] - exact.im);
-                    worst = largest(worst, std::abs(off) * shares[first + l]);
+                    double re = G.re[l] - exact.re, im = G.im[l] - exact.im, share = shares[first + l];
+                    worst = largest(worst, (re * re + im * im) * (share * share));
                 }
             }
     }
-    return worst;
+    return std::sqrt(worst);
 }
 
 }  // namespace detail
@@ -69,35 +72,38 @@ inline double mismatch(const double (&checks)[COMPARED], const double (&shares)[
 inline double rational_average(const EnergyPlan& plan, double hop, const LevelList& list, const SetData& data,
                                const Leads& leads, double* out) {
     int m = plan.nodes, pick = plan.picks[1];
-    Levels levels(list);
+    Levels levels(list, plan.window);
     Batch batch(levels);
-    Starts starts = start_poles(plan.omega[pick], data.isolated[pick].G, plan.window, hop, list, leads);
-    Resonances found = find_poles(starts, leads, batch);
+    Starts starts = start_poles(plan.omega[pick], data.isolated[pick].G, plan.window, hop, levels, leads);
+    Resonances found = find_poles(starts, levels, leads, batch);
     if (!found.whole) return INFINITY;
-    std::vector<Term> terms = conductance_terms(found, leads, batch);
+    PoleTerms terms = conductance_terms(found, leads, batch);
 
     double checks[COMPARED];
     for (int k = 0; k < COMPARED; ++k) checks[k] = k < CHECKS ? plan.omega[m + k] : data.sought[k - CHECKS];
-    int each = m + COMPARED;  // nodes, then checks; then the same at −ω
-    std::vector<double> signed_energies(padded(2 * each), 0.0);
-    for (int k = 0; k < each; ++k) {
-        double omega = k < m ? plan.omega[k] : checks[k - m];
-        signed_energies[k] = omega, signed_energies[each + k] = -omega;
-    }
-    std::vector<std::array<double, 4>> smooth(signed_energies.size());
-    for (int first = 0; first < int(signed_energies.size()); first += COLUMNS) {
-        Columns of_poles[4];
-        sum_poles(terms, Columns::load(&signed_energies[first]), of_poles);
-        for (int l = 0; l < COLUMNS && first + l < 2 * each; ++l)
-            for (int c = 0; c < 4; ++c) {
-                int sign = (first + l) / each, k = (first + l) % each;
-                smooth[first + l][c] = data.bare[k].at[sign][c] - of_poles[c][l];
+    // Of each conductance what the poles leave at the nodes, and at the checks: at ω, then at −ω.
+    std::vector<double> at_nodes[4];
+    for (auto& values : at_nodes) values.resize(padded(2 * m), 0.0);
+    double at_checks[4][2 * COMPARED];
+    auto rest = [&](int count, auto omega, auto bare, auto set) {
+        for (int first = 0; first < 2 * count; first += COLUMNS) {
+            Columns energies = 0.0, of_poles[4];
+            int some = std::min(COLUMNS, 2 * count - first);
+            for (int l = 0; l < some; ++l) {
+                int k = first + l;
+                energies.set(l, k < count ? omega[k] : -omega[k - count]);
             }
-    }
+            sum_poles(terms, energies, of_poles);
+            for (int l = 0; l < some; ++l) {
+                int k = first + l, sign = k < count ? 0 : 1;
+                for (int c = 0; c < 4; ++c) set(c, k, bare[k - sign * count].at[sign][c] - of_poles[c][l]);
+            }
+        }
+    };
+    rest(m, plan.omega.data(), &data.bare[0], [&](int c, int k, double value) { at_nodes[c][k] = value; });
+    rest(COMPARED, checks, &data.bare[m], [&](int c, int k, double value) { at_checks[c][k] = value; });
     auto polynomial = [&](const std::vector<double>& weights, int c) {
-        double total = 0.0;
-        for (int n = 0; n < 2 * m; ++n) total += weights[n] * smooth[n / m * each + n % m][c];
-        return total;
+        return dot(weights.data(), at_nodes[c].data(), padded(2 * m));
     };
     for (int v = 0; v < plan.biases; ++v)
         for (int c = 0; c < 4; ++c) out[4 * v + c] = polynomial(plan.weights[v], c);
@@ -114,7 +120,7 @@ inline double rational_average(const EnergyPlan& plan, double hop, const LevelLi
             std::vector<double> weights = k < CHECKS ? plan.at_checks[sign * CHECKS + k] : plan.weights_at(sign == 0 ? checks[k] : -checks[k]);
             double share = k < CHECKS ? shares[k] : std::sqrt(shares[k]);
             for (int c = 0; c < 4; ++c)
-                rough = detail::largest(rough, std::abs(polynomial(weights, c) - smooth[sign * each + m + k][c]) * share);
+                rough = detail::largest(rough, std::abs(polynomial(weights, c) - at_checks[c][sign * COMPARED + k]) * share);
         }
     rough *= ROUGHNESS;
     return of_model > rough ? of_model : rough;

@@ -20,7 +20,7 @@ constexpr double ELSEWHERE[SOUGHT] = {0.382, 0.764};  // where sets of fewer lev
 inline void dense_energies(const LevelList& levels, double hop, double window, double (&out)[SOUGHT]) {
     std::vector<double> angles;
     for (const Level& level : levels)
-        if (level.E < window && hop * detail::coupling(level) > INVISIBLE) angles.push_back(std::asin(level.E / window));
+        if (level.E < window && hop * detail::square(level.w, 8) > INVISIBLE) angles.push_back(std::asin(level.E / window));
     std::sort(angles.begin(), angles.end());
     int count = int(angles.size());
     std::vector<bool> taken(count, false);

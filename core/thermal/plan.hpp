@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "../poles/rows.hpp"
+#include "../values/vandermonde.hpp"
 
 namespace core {
 
@@ -45,10 +46,25 @@ inline void gauss_legendre(int n, std::vector<double>& x, std::vector<double>& w
     }
 }
 
+// −df/dx in units of kT as weights at points x of |x| < 32.
+struct ThermalKernel {
+    std::vector<double> x, share;
+    ThermalKernel() {
+        gauss_legendre(240, x, share);
+        double all = 0.0;
+        for (size_t i = 0; i < x.size(); ++i) {
+            double half = 1 / std::cosh(16 * x[i]);
+            x[i] *= 32, share[i] *= half * half;
+            all += share[i];
+        }
+        for (double& part : share) part /= all;
+    }
+};
+
 // The weights of the values at ω_k, then −ω_k, that give Σ_x share_x f(W u_x) of the polynomial f through them.
 inline std::vector<double> interpolated(const std::vector<double>& u, const std::vector<double>& share, int nodes) {
     int terms = 2 * nodes;
-    std::vector<double> moments(terms, 0.0), weights(terms);
+    std::vector<double> moments(terms, 0.0), weights(padded(terms), 0.0);
     for (size_t i = 0; i < u.size(); ++i) {
         double before = 1.0, now = u[i];
         moments[0] += share[i];
@@ -93,21 +109,14 @@ struct EnergyPlan {
             double between = k == 0 ? LOWEST : double(k * (nodes - 1) / CHECKS);
             omega.push_back(window * std::sin(std::numbers::pi * between / (2 * nodes)));
         }
-        for (int k = 0; k < CUBIC; ++k) picks[k] = int((k + 0.5) * nodes / CUBIC);
-        invert_vandermonde();
-        std::vector<double> x, dx;
-        detail::gauss_legendre(240, x, dx);
-        double all = 0.0;
-        for (size_t i = 0; i < x.size(); ++i) {
-            double half = 1 / std::cosh(16 * x[i]);
-            dx[i] *= half * half;
-            all += dx[i];
-        }
-        for (double& share : dx) share /= all;
+        double picked[CUBIC];
+        for (int k = 0; k < CUBIC; ++k) picks[k] = int((k + 0.5) * nodes / CUBIC), picked[k] = omega[picks[k]];
+        invert_vandermonde(picked, cubic);
+        static const detail::ThermalKernel kernel;
         for (double v : bias) {
-            std::vector<double> u(x.size());
-            for (size_t i = 0; i < x.size(); ++i) u[i] = std::clamp((v + kT * 32 * x[i]) / window, -1.0, 1.0);
-            weights.push_back(detail::interpolated(u, dx, nodes));
+            std::vector<double> u;
+            for (double x : kernel.x) u.push_back(std::clamp((v + kT * x) / window, -1.0, 1.0));
+            weights.push_back(detail::interpolated(u, kernel.share, nodes));
         }
         for (int sign : {1, -1})
             for (int k = 0; k < CHECKS; ++k) at_checks.push_back(detail::interpolated({sign * omega[nodes + k] / window}, {1.0}, nodes));
@@ -116,7 +125,7 @@ struct EnergyPlan {
     // The weights of the smooth part's values at the nodes for that at any ω but a node: the barycentric
     // formula, in which Chebyshev's node u has ±√(1 − u²).
     std::vector<double> weights_at(double at) const {
-        std::vector<double> weights(2 * nodes);
+        std::vector<double> weights(padded(2 * nodes), 0.0);
         double total = 0.0;
         for (int n = 0; n < 2 * nodes; ++n) {
             double u = omega[n % nodes] / window * (n < nodes ? 1 : -1);
@@ -125,22 +134,6 @@ struct EnergyPlan {
         }
         for (double& weight : weights) weight /= total;
         return weights;
-    }
-
-private:
-    // Of the Lagrange polynomials through the picks the coefficients are the columns of the inverse.
-    void invert_vandermonde() {
-        for (int k = 0; k < CUBIC; ++k) {
-            double coefficient[CUBIC] = {1.0}, scale = 1.0;
-            int degree = 0;
-            for (int j = 0; j < CUBIC; ++j) {
-                if (j == k) continue;
-                double root = omega[picks[j]];
-                for (int i = ++degree; i >= 0; --i) coefficient[i] = (i > 0 ? coefficient[i - 1] : 0.0) - root * coefficient[i];
-                scale *= omega[picks[k]] - root;
-            }
-            for (int i = 0; i < CUBIC; ++i) cubic[i][k] = coefficient[i] / scale;
-        }
     }
 };
 

@@ -14,10 +14,17 @@
 
 namespace core {
 
-// One pole's 2 Re[r/(ω − z)] in each conductance, for electrons, then holes incident; a hole's r is 0 where a
-// pole is its own mirror image.
-struct Term {
-    Amplitude z, r[2][4];
+// The poles' 2 Re[r/(ω − z)] in each conductance, for electrons, then holes incident; a hole's r is 0 where a
+// pole is its own mirror image.  Up to a multiple of COLUMNS, terms of r = 0 follow.
+struct PoleTerms {
+    int count;
+    std::vector<double> x, y, re[2][4], im[2][4];  // z = x + iy
+
+    explicit PoleTerms(int count) : count(count), x(padded(count), 0.0), y(padded(count), -1.0) {
+        for (auto* parts : {&re, &im})
+            for (auto& charge : *parts)
+                for (auto& of : charge) of.resize(padded(count), 0.0);
+    }
 };
 
 namespace detail {
@@ -66,17 +73,17 @@ inline Conductances<PoleComplex> residues(const Leads& leads, Batch& b) {
 
 }  // namespace detail
 
-inline std::vector<Term> conductance_terms(const Resonances& found, const Leads& leads, Batch& batch) {
-    std::vector<Term> terms;
-    size_t count = found.order.size();
-    for (size_t first = 0; first < count; first += POLES) {
-        for (size_t l = 0; l < POLES; ++l) batch.load(int(l), found.poles[found.order[std::min(first + l, count - 1)]]);
+inline PoleTerms conductance_terms(const Resonances& found, const Leads& leads, Batch& batch) {
+    int count = int(found.order.size());
+    PoleTerms terms(count);
+    for (int first = 0; first < count; first += POLES) {
+        for (int l = 0; l < POLES; ++l) batch.load(l, found.poles[found.order[std::min(first + l, count - 1)]]);
         auto r = detail::residues(leads, batch);
-        for (size_t l = 0; l < POLES && first + l < count; ++l) {
-            Term term{found.poles[found.order[first + l]].z, {}};
-            for (int hole = 0; hole < (int(first + l) < found.paired ? 2 : 1); ++hole)
-                for (int k = 0; k < 4; ++k) term.r[hole][k] = {r.at[hole][k].re[int(l)], r.at[hole][k].im[int(l)]};
-            terms.push_back(term);
+        for (int l = 0; l < POLES && first + l < count; ++l) {
+            int at = first + l;
+            terms.x[at] = batch.z.re[l], terms.y[at] = batch.z.im[l];
+            for (int hole = 0; hole < (at < found.paired ? 2 : 1); ++hole)
+                for (int k = 0; k < 4; ++k) terms.re[hole][k][at] = r.at[hole][k].re[l], terms.im[hole][k][at] = r.at[hole][k].im[l];
         }
     }
     return terms;
@@ -84,16 +91,17 @@ inline std::vector<Term> conductance_terms(const Resonances& found, const Leads&
 
 // Σ 2 Re[r/(ω − z)] over all poles at COLUMNS real ω of either sign.  A mirror image −z* has the residue −r̄*
 // of the other incident charge.
-inline void sum_poles(const std::vector<Term>& terms, Columns omega, Columns (&out)[4]) {
+inline void sum_poles(const PoleTerms& terms, Columns omega, Columns (&out)[4]) {
     for (auto& total : out) total = 0.0;
-    for (const Term& term : terms) {
-        double x = term.z.real(), y = term.z.imag();
+    for (int n = 0; n < terms.count; ++n) {
+        double x = terms.x[n], y = terms.y[n];
         Columns below = omega - x, above = omega + x, square = y * y;
-        Columns near = 2.0 * inverse(square + below * below), far = 2.0 * inverse(square + above * above);
-        Columns a = below * near, b = y * near, c = above * far, d = y * far;
+        Columns near = square + below * below, far = square + above * above;
+        Columns over = 2.0 * inverse(Columns(near * far)), to_near = over * far, to_far = over * near;
+        Columns a = below * to_near, b = y * to_near, c = above * to_far, d = y * to_far;
         for (int k = 0; k < 4; ++k) {
-            out[k] = out[k] + a * term.r[0][k].real() - b * term.r[0][k].imag();
-            out[k] = out[k] - c * term.r[1][k].real() - d * term.r[1][k].imag();
+            out[k] = out[k] + a * terms.re[0][k][n] - b * terms.im[0][k][n];
+            out[k] = out[k] - c * terms.re[1][k][n] - d * terms.im[1][k][n];
         }
     }
 }

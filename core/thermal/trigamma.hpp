@@ -27,27 +27,23 @@ inline Complex<R> trigamma(Complex<R> z) {
     return total + over + square * series;
 }
 
-// Add the averages of Σ 2 Re[r/(ω − z)] to out, shape (bias, 4), pole after pole.
-inline void average_poles(const std::vector<Term>& terms, const std::vector<double>& bias, double kT, double* out) {
+// Add the averages of Σ 2 Re[r/(ω − z)] to out, shape (bias, 4).
+inline void average_poles(const PoleTerms& terms, const std::vector<double>& bias, double kT, double* out) {
     double unit = 1.0 / (2 * std::numbers::pi * kT);
-    for (size_t b = 0; b < bias.size(); ++b)
-        for (int hole = 0; hole < 2; ++hole) {
-            double V = hole ? -bias[b] : bias[b];
-            for (size_t first = 0; first < terms.size(); first += POLES) {
-                size_t some = std::min(size_t(POLES), terms.size() - first);
-                PoleReal re{}, im{};
-                for (size_t l = 0; l < POLES; ++l) {
-                    const Term& term = terms[first + std::min(l, some - 1)];
-                    re.set(int(l), term.z.real()), im.set(int(l), term.z.imag());
-                }
-                Complex<PoleReal> psi = trigamma(Complex<PoleReal>(PoleReal(0.5) - im * unit, (re - V) * unit));
-                for (size_t l = 0; l < some; ++l) {
-                    double kr = 2 * unit * psi.im[int(l)], ki = -2 * unit * psi.re[int(l)];
-                    const Amplitude* r = terms[first + l].r[hole];
-                    for (int k = 0; k < 4; ++k) out[4 * b + k] += kr * r[k].real() - ki * r[k].imag();
+    for (size_t b = 0; b < bias.size(); ++b) {
+        Columns total[4] = {0.0, 0.0, 0.0, 0.0};
+        for (int first = 0; first < terms.count; first += COLUMNS)
+            for (int hole = 0; hole < 2; ++hole) {
+                double V = hole ? -bias[b] : bias[b];
+                Columns x = Columns::load(&terms.x[first]), y = Columns::load(&terms.y[first]);
+                Complex<Columns> psi = trigamma(Complex<Columns>(Columns(0.5) - y * unit, (x - V) * unit));
+                for (int k = 0; k < 4; ++k) {
+                    Columns re = Columns::load(&terms.re[hole][k][first]), im = Columns::load(&terms.im[hole][k][first]);
+                    total[k] = total[k] + psi.im * re + psi.re * im;
                 }
             }
-        }
+        for (int k = 0; k < 4; ++k) out[4 * b + k] += 2 * unit * sum(total[k]);
+    }
 }
 
 }  // namespace core

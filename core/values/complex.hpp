@@ -24,6 +24,8 @@ CORE_INLINE double multiply(double a, double b) { return a * b; }
 CORE_INLINE double multiply_add(double a, double b, double c) { return a * b + c; }
 CORE_INLINE double multiply_subtract(double a, double b, double c) { return c - a * b; }
 CORE_INLINE double inverse(double a) { return 1.0 / a; }
+CORE_INLINE double size(double a) { return std::abs(a); }
+CORE_INLINE double larger(double a, double b) { return b > a ? b : a; }
 
 template <class R> CORE_INLINE Complex<R> plus(Complex<R> a, Complex<R> b) { return {a.re + b.re, a.im + b.im}; }
 template <class R> CORE_INLINE Complex<R> minus(Complex<R> a, Complex<R> b) { return {a.re - b.re, a.im - b.im}; }

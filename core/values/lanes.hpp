@@ -82,6 +82,19 @@ CORE_INLINE Register size(Register a) {
     return (Register)((Mask)a & (Mask{} + ALL_BUT_SIGN));
 }
 
+// The larger of both; a where one of them is no number.
+CORE_INLINE Register larger(Register a, Register b) {
+#if defined(__AVX512F__)
+    return _mm512_max_pd(b, a);
+#elif defined(__AVX2__) && defined(__FMA__)
+    return _mm256_max_pd(b, a);
+#elif defined(__x86_64__)
+    return (Register)_mm_max_pd((__m128d)b, (__m128d)a);
+#else
+    return b > a ? b : a;
+#endif
+}
+
 // Of lanes whose number has the bit SPAN, take b's a bit lower into a, of the others a's into b.
 template <int SPAN, int... lane>
 CORE_INLINE void exchange(Register& a, Register& b, std::integer_sequence<int, lane...>) {
@@ -171,8 +184,7 @@ CORE_INLINE Lanes<W> where_greater(Lanes<W> a, Lanes<W> b, Lanes<W> x, Lanes<W> 
 
 // The larger of both; a where one of them is no number, so that NaN in a stays.
 template <int W> CORE_INLINE Lanes<W> larger(Lanes<W> a, Lanes<W> b) {
-    return where_greater(b, a, b, a);
+    return Lanes<W>::each(hardware::larger, a, b);
 }
-
 
 }  // namespace core

@@ -2,13 +2,13 @@
 //
 // The leads touch the end sites alone, so the inner sites are eliminated from M = (ω − H)/t',
 //
-//     M' = [[E, C], [F, D]],   E ← E − C D⁻¹ F,   C ← −C D⁻¹ τz,   F ← −τz D⁻¹ F,
-//                              D ← A_{n+1} − τz D⁻¹ τz,
+//     M' = [[E, C], [F, D]],   E ← E − C D⁻¹ F,   C ← C D⁻¹,   F ← D⁻¹ F,   D ← A_{n+1} − D⁻¹,
 //
 // with H of Eq. S1 and its self-energy, D the block of the site that is eliminated next and A_n the
 // onsite blocks of M.  A rotation of the spin from site to site, U_n = exp(−iσyφn), tan φ = α/2at,
-// has made the hopping −t'τz with t' = √(t² + (α/2a)²), so that it costs signs only; it turns the
-// Zeeman term into V_Z(σx cos 2φn + σz sin 2φn).  In this frame M is symmetric at θ = 0: real below
+// has made the hopping −t'τz with t' = √(t² + (α/2a)²), and (−τz)ⁿ at site n makes it t', so that it costs
+// nothing.  The one turns the Zeeman term into V_Z(σx cos 2φn + σz sin 2φn), the other gives the pairing
+// the sign (−1)ⁿ; at the end the last site is turned back to +1.  In this frame M is symmetric at θ = 0: real below
 // the gap of the parent superconductor (Lanes), complex
 // above it or where levels are broadened (Complex<Lanes>).  Then F = Cᵀ, and is not kept.  In a tilted
 // field the component along the axis of the rotation, V_Z sin θ σy, stays what it is: M is Hermitian
@@ -91,23 +91,15 @@ CORE_INLINE Block onsite(const Terms<N>& of, double V, double x, double y, doubl
     return A;
 }
 
-// A − τz X τz.
+// A − X.
 template <class Block>
-CORE_INLINE Block minus_hopped(const Block& A, const Block& X) {
+CORE_INLINE Block minus(const Block& A, const Block& X) {
     Block D;
 #pragma GCC unroll 4
     for (int i = 0; i < 4; ++i)
 #pragma GCC unroll 4
-        for (int j = 0; j <= (Block::MIRRORED ? i : 3); ++j)
-            D(i, j) = (i < 2) == (j < 2) ? A(i, j) - X(i, j) : A(i, j) + X(i, j);
+        for (int j = 0; j <= (Block::MIRRORED ? i : 3); ++j) D(i, j) = A(i, j) - X(i, j);
     return D;
-}
-
-// The row −x T⁻¹ τz.
-template <class N>
-CORE_INLINE void hop(const Triangle4<N>& T, N (&x)[4], N (&to)[4]) {
-    solve_upper(T, x);
-    to[0] = -x[0], to[1] = -x[1], to[2] = x[2], to[3] = x[3];
 }
 
 // Eliminate the site of block D, before the site of onsite block `next`; return X = D⁻¹.
@@ -135,18 +127,21 @@ CORE_INLINE Block eliminate_site(EndBlocks<N, Block>& s, const Block& next) {
 #pragma GCC unroll 4
         for (int j = 0; j <= (Block::MIRRORED ? i : 3); ++j)
             s.E(i, j) = s.E(i, j) - U[0] * Z(j, 0) - U[1] * Z(j, 1) - U[2] * Z(j, 2) - U[3] * Z(j, 3);
-        hop(f.left(), U, s.C.entry[i]);
+        solve_upper(f.left(), U);
+#pragma GCC unroll 4
+        for (int k = 0; k < 4; ++k) s.C(i, k) = U[k];
     }
     if constexpr (!Block::MIRRORED) {
 #pragma GCC unroll 4
         for (int j = 0; j < 4; ++j) {
 #pragma GCC unroll 4
             for (int k = 0; k < 4; ++k) Z(j, k) = Z(j, k) * f.over[k];
-            hop(f.right(), Z.entry[j], s.F_transposed.entry[j]);
+            solve_upper(f.right(), Z.entry[j]);
         }
+        s.F_transposed = Z;
     }
     Block X = inverse(f);
-    s.D = minus_hopped(next, X);
+    s.D = minus(next, X);
     return X;
 }
 
@@ -171,10 +166,28 @@ CORE_INLINE EndBlocks<N, Block> first_two_sites(const Block& first, const Block&
     s.E = first;
     s.D = second;
     for (int i = 0; i < 4; ++i)
-        for (int j = 0; j < 4; ++j) s.C(i, j) = i != j ? 0.0 : i < 2 ? 1.0 : -1.0;  // τz
+        for (int j = 0; j < 4; ++j) s.C(i, j) = i == j ? -1.0 : 0.0;
     if constexpr (!Block::MIRRORED) s.F_transposed = s.C;
     s.growth = 0.0;
     return s;
+}
+
+// Turn the last of the sites back from (−τz)ⁿ.
+template <class Block, class Coupling>
+CORE_INLINE void turn_back(int sites, Block& D, Coupling& C) {
+    if (sites % 2 == 1) return;
+    for (int i = 0; i < 4; ++i) {
+        C(i, 0) = -C(i, 0), C(i, 1) = -C(i, 1);
+        for (int j = 0; j <= (Block::MIRRORED ? i : 3); ++j)
+            if ((i < 2) != (j < 2)) D(i, j) = -D(i, j);
+    }
+}
+
+// (−1)ⁿ times the pairing of the first site.
+template <class N>
+CORE_INLINE Terms<N> at_site(Terms<N> of, int n) {
+    if (n % 2 == 1) of.anomalous = -of.anomalous;
+    return of;
 }
 
 // Take a look at C now and then, see LOOK_EVERY.
@@ -190,12 +203,17 @@ CORE_INLINE void look_at_coupling(EndBlocks<N, Block>& s, int n, int sites, decl
 // Block: Symmetric4<N>, Hermitian4<N> or Block4<N>, as M is.
 template <class N, class Block = Symmetric4<N>>
 inline EndBlocks<N, Block> eliminate_inner_sites(const WireView& wire, const Terms<N>& of) {
-    auto A = [&](int n) { return onsite<Block>(of, wire.V[n], wire.zeeman_x[n], wire.zeeman_y, wire.zeeman_z[n]); };
+    auto A = [&](int n) { return onsite<Block>(at_site(of, n), wire.V[n], wire.zeeman_x[n], wire.zeeman_y, wire.zeeman_z[n]); };
     EndBlocks<N, Block> s = first_two_sites<N>(A(0), A(1));
     decltype(s.growth) before = 1.0;
     for (int n = 2; n < wire.sites; ++n) {
         eliminate_site(s, A(n));
         look_at_coupling(s, n, wire.sites, before);
+    }
+    turn_back(wire.sites, s.D, s.C);
+    if constexpr (!Block::MIRRORED) {
+        Block unchanged = s.D;
+        turn_back(wire.sites, unchanged, s.F_transposed);
     }
     return s;
 }

@@ -1,8 +1,8 @@
 // The end blocks' derivatives by ω, carried along with the elimination.
 //
-// With X = D⁻¹, Y = C X and Z = dC − Y dD of the old blocks,
+// With X = D⁻¹, Y = C X, which is the new C, and Z = dC − Y dD of the old blocks,
 //
-//     dE ← dE − Z Yᵀ − Y dCᵀ,   dC ← −Z X τz,   dD ← dA + τz X dD X τz.
+//     dE ← dE − Z Yᵀ − Y dCᵀ,   dC ← Z X,   dD ← dA + X dD X.
 //
 // Numbers that carry a slope (dual numbers) through the factorisation do it at the same cost, but where a
 // level of the eliminated piece lies at ω, D⁻¹ being some g ≫ 1, they differentiate terms of the order of g² that
@@ -19,7 +19,7 @@ struct EndSlopes {
     Block4<N> C;
 };
 
-// dA_n, the same at every site.
+// dA_n.
 template <class N>
 CORE_INLINE Symmetric4<N> onsite_slope(N normal, N anomalous) {
     Symmetric4<N> A;
@@ -29,13 +29,12 @@ CORE_INLINE Symmetric4<N> onsite_slope(N normal, N anomalous) {
     return A;
 }
 
-// Carry the slopes over the site that has just been eliminated; C is the new one, −Y τz.
+// Carry the slopes over the site that has just been eliminated.
 template <class N>
-CORE_INLINE void differentiate_site(EndSlopes<N>& d, const Block4<N>& C, const Symmetric4<N>& X, const Symmetric4<N>& dA) {
-    Block4<N> Z, Y, XdD;
+CORE_INLINE void differentiate_site(EndSlopes<N>& d, const Block4<N>& Y, const Symmetric4<N>& X, const Symmetric4<N>& dA) {
+    Block4<N> Z, XdD;
 #pragma GCC unroll 4
     for (int i = 0; i < 4; ++i) {
-        Y(i, 0) = -C(i, 0), Y(i, 1) = -C(i, 1), Y(i, 2) = C(i, 2), Y(i, 3) = C(i, 3);
 #pragma GCC unroll 4
         for (int j = 0; j < 4; ++j) {
             Z(i, j) = d.C(i, j) - Y(i, 0) * d.D(0, j) - Y(i, 1) * d.D(1, j) - Y(i, 2) * d.D(2, j) - Y(i, 3) * d.D(3, j);
@@ -50,14 +49,13 @@ CORE_INLINE void differentiate_site(EndSlopes<N>& d, const Block4<N>& C, const S
             N YdC = Y(i, 0) * d.C(j, 0) + Y(i, 1) * d.C(j, 1) + Y(i, 2) * d.C(j, 2) + Y(i, 3) * d.C(j, 3);
             d.E(i, j) = d.E(i, j) - ZY - YdC;
             N XdDX = XdD(i, 0) * X(0, j) + XdD(i, 1) * X(1, j) + XdD(i, 2) * X(2, j) + XdD(i, 3) * X(3, j);
-            d.D(i, j) = (i < 2) == (j < 2) ? dA(i, j) + XdDX : dA(i, j) - XdDX;
+            d.D(i, j) = dA(i, j) + XdDX;
         }
 #pragma GCC unroll 4
     for (int i = 0; i < 4; ++i)
 #pragma GCC unroll 4
         for (int j = 0; j < 4; ++j) {
-            N ZX = Z(i, 0) * X(0, j) + Z(i, 1) * X(1, j) + Z(i, 2) * X(2, j) + Z(i, 3) * X(3, j);
-            d.C(i, j) = j < 2 ? -ZX : ZX;
+            d.C(i, j) = Z(i, 0) * X(0, j) + Z(i, 1) * X(1, j) + Z(i, 2) * X(2, j) + Z(i, 3) * X(3, j);
         }
 }
 
@@ -65,17 +63,19 @@ CORE_INLINE void differentiate_site(EndSlopes<N>& d, const Block4<N>& C, const S
 template <class N>
 inline EndBlocks<N> eliminate_inner_sites_with_slopes(const WireView& wire, const Terms<N>& of, N normal_slope,
                                                       N anomalous_slope, EndSlopes<N>& d) {
-    auto A = [&](int n) { return onsite<Symmetric4<N>>(of, wire.V[n], wire.zeeman_x[n], 0.0, wire.zeeman_z[n]); };
+    auto A = [&](int n) { return onsite<Symmetric4<N>>(at_site(of, n), wire.V[n], wire.zeeman_x[n], 0.0, wire.zeeman_z[n]); };
+    auto dA = [&](int n) { return onsite_slope(normal_slope, n % 2 == 1 ? -anomalous_slope : anomalous_slope); };
     EndBlocks<N> s = first_two_sites<N>(A(0), A(1));
-    const Symmetric4<N> dA = onsite_slope(normal_slope, anomalous_slope);
-    d.E = d.D = dA;
+    d.E = dA(0), d.D = dA(1);
     for (int k = 0; k < 16; ++k) d.C(k / 4, k % 4) = 0.0;
     decltype(s.growth) before = 1.0;
     for (int n = 2; n < wire.sites; ++n) {
         Symmetric4<N> X = eliminate_site(s, A(n));
         look_at_coupling(s, n, wire.sites, before);
-        differentiate_site(d, s.C, X, dA);
+        differentiate_site(d, s.C, X, dA(n));
     }
+    turn_back(wire.sites, s.D, s.C);
+    turn_back(wire.sites, d.D, d.C);
     return s;
 }
 
