@@ -36,6 +36,16 @@ typedef long long Mask __attribute__((vector_size(8 * REGISTER)));
 
 namespace hardware {
 
+CORE_INLINE Register all(double x) {
+#if defined(__AVX512F__)
+    return _mm512_set1_pd(x);
+#elif defined(__AVX2__) && defined(__FMA__)
+    return _mm256_set1_pd(x);
+#else
+    return Register{x, x};
+#endif
+}
+
 CORE_INLINE Register multiply_add(Register a, Register b, Register c) {
 #if defined(__AVX512F__)
     return _mm512_fmadd_pd(a, b, c);
@@ -129,7 +139,7 @@ struct Lanes {
 
     Lanes() = default;
     CORE_INLINE Lanes(double x) {
-        for (auto& part : r) part = Register{} + x;
+        for (auto& part : r) part = hardware::all(x);
     }
 
     CORE_INLINE static Lanes load(const double* from) {
