@@ -24,8 +24,8 @@ struct NodeData {
 
 struct Pencil {
     int n = 0, rank = 0, width = 0;
-    std::vector<double> A;     // (rank, width): row k holds columns rank − 1 down to 0 of the matrix
-    std::vector<double> rows;  // (rank, 8), what the ends see
+    Row A;     // (rank, width): row k holds columns rank − 1 down to 0 of the matrix
+    Row rows;  // (rank, 8), what the ends see
 
     // omega: the nodes in meV.
     void make(const double* omega, const NodeData* data, int nodes) {
@@ -44,7 +44,7 @@ struct Pencil {
     }
 
 private:
-    std::vector<double> phi, norm, scale, apart, R, L, K, Y;  // apart: 1/(x_k − x_m)
+    Row phi, norm, scale, apart, R, L, K, Y;  // apart: 1/(x_k − x_m)
 
     // Φ − diag(0, 1) and −dΦ/dx.
     static void resolvents(double w, const NodeData& at, double* phi, double* norm) {
@@ -81,7 +81,7 @@ private:
     }
 
     // The place of the largest entry, the first of equal ones, or −1 where none is above DROP.
-    static int largest(const std::vector<double>& of) {
+    static int largest(const Row& of) {
         Columns best = DROP, at = -1.0;
         for (int j = 0; j < int(of.size()); j += COLUMNS) {
             Columns entry = Columns::load(&of[j]);
@@ -98,7 +98,7 @@ private:
     }
 
     void choose(const double* omega, int nodes) {
-        std::vector<double> pivots(n, 1.0), energy(n);
+        Row pivots(n, 1.0), energy(n);
         std::vector<int> order;
         rank = 0;
         for (int k = 0; k < n; ++k) {

@@ -1,12 +1,28 @@
 // Rows of matrices, eight columns at a time.  Sums over columns go in one order on every processor.
 #pragma once
 
+#include <new>
+#include <vector>
+
 #include "../values/lanes.hpp"
 
 namespace core {
 
 constexpr int COLUMNS = 8;
 using Columns = Lanes<COLUMNS>;
+
+// Numbers that start at a multiple of COLUMNS, so that no load of them meets two lines of the cache.
+template <class T>
+struct AtColumns {
+    using value_type = T;
+    static constexpr std::align_val_t PLACE{sizeof(Columns)};
+    AtColumns() = default;
+    template <class Other> AtColumns(const AtColumns<Other>&) {}
+    T* allocate(size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), PLACE)); }
+    void deallocate(T* p, size_t) { ::operator delete(p, PLACE); }
+    bool operator==(const AtColumns&) const { return true; }
+};
+using Row = std::vector<double, AtColumns<double>>;
 
 inline int padded(int n) { return (n + COLUMNS - 1) / COLUMNS * COLUMNS; }
 

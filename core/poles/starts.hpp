@@ -63,10 +63,14 @@ inline Symmetric8<Complex<double>> dressed_leads(double omega, const double (&G)
 
 // A complex symmetric matrix and rows that are rotated along, n×n each.
 struct NearlyDiagonal {
-    int n, stride;
-    std::vector<double> re, im, rows_re, rows_im, diagonal_re, diagonal_im;
-    explicit NearlyDiagonal(int n)
-        : n(n), stride(padded(n) + COLUMNS), re(size_t(n) * stride), im(re), rows_re(re), rows_im(re), diagonal_re(stride), diagonal_im(stride) {
+    int n = 0, stride = 0;
+    Row re, im, rows_re, rows_im, diagonal_re, diagonal_im;
+
+    void resize(int size) {
+        n = size, stride = padded(n);
+        for (auto* matrix : {&re, &im, &rows_re, &rows_im}) matrix->resize(size_t(n) * stride);
+        for (auto* diagonal : {&diagonal_re, &diagonal_im}) diagonal->resize(stride);
+        for (auto* rows : {&rows_re, &rows_im}) std::fill(rows->begin(), rows->end(), 0.0);
         for (int k = 0; k < n; ++k) rows_re[place(k, k)] = 1.0;
     }
     size_t place(int i, int j) const { return size_t(i) * stride + j; }
@@ -75,7 +79,7 @@ struct NearlyDiagonal {
     void set(int i, int j, Amplitude value) { re[place(i, j)] = value.real(), im[place(i, j)] = value.imag(); }
 
     // Replace rows p and q by c·p − s·q and s·p + c·q.
-    void rotate(std::vector<double>& re, std::vector<double>& im, int p, int q, Amplitude c, Amplitude s) const {
+    void rotate(Row& re, Row& im, int p, int q, Amplitude c, Amplitude s) const {
         Columns cr = c.real(), ci = c.imag(), sr = s.real(), si = s.imag();
         for (int j = 0; j < n; j += COLUMNS) {
             double *pr = &re[place(p, j)], *pi = &im[place(p, j)], *qr = &re[place(q, j)], *qi = &im[place(q, j)];
@@ -128,10 +132,11 @@ struct NearlyDiagonal {
 // The Hamiltonian of the near levels +E, then −E, with the part of Σ̃ without slope.  Between the
 // chiralities Σ̃(−ω) = Σ̃(ω)*, within them −Σ̃(ω)*: the real part of the one and the imaginary part of
 // the other have no slope at ω = 0.
-inline NearlyDiagonal mixed_levels(const Levels& levels, const std::vector<int>& near, const Symmetric8<Complex<double>>& dressed) {
+inline void mix_levels(const Levels& levels, const std::vector<int>& near, const Symmetric8<Complex<double>>& dressed,
+                       NearlyDiagonal& H) {
     int count = int(near.size()), width = padded(count);
-    NearlyDiagonal H(2 * count);
-    std::vector<double> u(8 * width);  // (8, level)
+    H.resize(2 * count);
+    Row u(8 * width), part(4 * width);  // (8, level); even, odd, sum, difference
     for (int m = 0; m < count; ++m)
         for (int i = 0; i < 8; ++i) u[i * width + m] = levels.weight[near[m]][i];
     for (int k = 0; k < count; ++k) {
@@ -143,7 +148,6 @@ inline NearlyDiagonal mixed_levels(const Levels& levels, const std::vector<int>&
                     within[i] += dressed(i, j).im * a[j];
                 else
                     across[i] += dressed(i, j).re * a[j];
-        std::vector<double> part(4 * width);  // even, odd, sum, difference
         for (int m = 0; m < count; m += COLUMNS) {
             Columns same[2] = {0.0, 0.0}, other[2] = {0.0, 0.0};
             for (int i = 0; i < 8; ++i) {
@@ -161,7 +165,6 @@ inline NearlyDiagonal mixed_levels(const Levels& levels, const std::vector<int>&
             H.set(k, count + m, {difference[m], odd[m]}), H.set(count + k, m, {-difference[m], odd[m]});
         }
     }
-    return H;
 }
 
 }  // namespace detail
@@ -178,7 +181,8 @@ inline Starts start_poles(double omega, const double (&G)[8][8], double window, 
     std::vector<int> near;
     for (int n = 0; n < levels.size(); ++n)
         if (levels.E[n] < NEAR * window && hop * levels.coupling(n) > INVISIBLE) near.push_back(n);
-    auto H = detail::mixed_levels(levels, near, detail::dressed_leads(omega, G, levels, near, leads));
+    static thread_local detail::NearlyDiagonal H;
+    detail::mix_levels(levels, near, detail::dressed_leads(omega, G, levels, near, leads), H);
     H.diagonalise();
     int count = int(near.size()), centred = 0;
     std::vector<int> right;

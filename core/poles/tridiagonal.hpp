@@ -56,7 +56,7 @@ inline void tridiagonalise(Pencil& pencil, Tridiagonal& T, int set) {
     int r = pencil.rank, width = pencil.width;
     double* A = &pencil.A[size_t(r - 1) * width];
     auto seen = [&](int m) { return &pencil.rows[8 * (r - 1 - m)]; };
-    std::vector<double> v(width), p(width), next(width), product(width);
+    Row v(width), p(width), next(width), product(width);
     for (int m = r - 1; m >= 0; --m) {
         int k = r - 1 - m, active = padded(m);
         double* row = A - std::ptrdiff_t(m) * width;
@@ -97,15 +97,15 @@ namespace detail {
 
 // Chase each set's bulge from its end to `first`, carrying the row that turns next along.
 inline void sweep(Tridiagonal& T, int first, int last, Sets end, Sets g) {
-    const Sets zero = 0.0, one = 1.0;
+    const Sets zero = 0.0, one = 1.0, tiny = 1e-290;
     Sets s = one, c = one, p = zero;
     std::array<Sets, 8> carried = T.rows[last];
     for (int i = last - 1; i >= first; --i) {
         Sets here = double(i), below = T.diagonal[i + 1], f = s * T.off[i], b = c * T.off[i];
         Sets square = f * f + g * g, r = root(square);
-        Sets over = where_greater(square, zero, inverse(r), zero);
+        Sets over = where_greater(square, tiny, Sets(r * inverse(square)), zero);  // 1/r, with the division beside the root
         Sets sine = f * over, cosine = g * over;
-        cosine = where_greater(square, zero, cosine, one);
+        cosine = where_greater(square, tiny, cosine, one);
         Sets h = below - p, x = (T.diagonal[i] - h) * sine + (b + b) * cosine, q = sine * x;
         T.off[i + 1] = where_greater(end, here, r, T.off[i + 1]);
         T.diagonal[i + 1] = where_greater(end, here, h + q, below);
