@@ -88,6 +88,11 @@ inline void solve_nodes(const ThermalField& field, const EnergyPlan& plan, const
         auto bare = lossless_conductances_of_ends<SlopeReal>(G, leads);
         Symmetric8<SlopeReal> isolated, slope;
         isolated_ends(ends, slopes, isolated, slope);
+        double own[36][SLOPE_LANES], own_slope[36][SLOPE_LANES];
+        for (int k = 0; k < 36; ++k) {
+            SlopeReal G = isolated.entry[k] * (1 / field.hop), dG = slope.entry[k] * (1 / field.hop);
+            G.store(own[k]), dG.store(own_slope[k]);
+        }
         for (int l = 0; l < SLOPE_LANES && piece + l < total; ++l) {
             SetData& of = data[(piece + l) / nodes];
             int e = (piece + l) % nodes;
@@ -95,8 +100,8 @@ inline void solve_nodes(const ThermalField& field, const EnergyPlan& plan, const
             of.bare[e] = lane_of(bare, l);
             for (int i = 0; i < 8; ++i)
                 for (int j = 0; j < 8; ++j) {
-                    of.isolated[e].G[i][j] = isolated(i, j)[l] / field.hop;
-                    of.isolated[e].slope[i][j] = slope(i, j)[l] / field.hop;
+                    int k = Symmetric8<SlopeReal>::place(i, j);
+                    of.isolated[e].G[i][j] = own[k][l], of.isolated[e].slope[i][j] = own_slope[k][l];
                 }
         }
     }
@@ -127,7 +132,7 @@ inline void solve_checks(const ThermalField& field, const EnergyPlan& plan, cons
             of.growth = largest(of.growth, ends.growth[l]);
             of.bare[plan.nodes + check] = lane_of(bare, l);
             auto& green = of.green[check];
-            for (int k = 0; k < 36; ++k) green.entry[k] = {G.entry[k].re[l] / field.hop, G.entry[k].im[l] / field.hop};
+            for (int k = 0; k < 36; ++k) green.entry[k] = {G.entry[k].re[l] * (1 / field.hop), G.entry[k].im[l] * (1 / field.hop)};
             to_chiral(green);
         }
     }
