@@ -183,12 +183,13 @@ CORE_INLINE void turn_back(int sites, Block& D, Coupling& C) {
     }
 }
 
-// (−1)ⁿ times the pairing of the first site.
+// The terms of even sites, then of odd ones.
 template <class N>
-CORE_INLINE Terms<N> at_site(Terms<N> of, int n) {
-    if (n % 2 == 1) of.anomalous = -of.anomalous;
-    return of;
-}
+struct TermsOfSites {
+    Terms<N> of[2];
+    explicit TermsOfSites(const Terms<N>& terms) : of{terms, terms} { of[1].anomalous = -terms.anomalous; }
+    CORE_INLINE const Terms<N>& operator()(int n) const { return of[n % 2]; }
+};
 
 // Take a look at C now and then, see LOOK_EVERY.
 template <class N, class Block>
@@ -203,7 +204,8 @@ CORE_INLINE void look_at_coupling(EndBlocks<N, Block>& s, int n, int sites, decl
 // Block: Symmetric4<N>, Hermitian4<N> or Block4<N>, as M is.
 template <class N, class Block = Symmetric4<N>>
 inline EndBlocks<N, Block> eliminate_inner_sites(const WireView& wire, const Terms<N>& of) {
-    auto A = [&](int n) { return onsite<Block>(at_site(of, n), wire.V[n], wire.zeeman_x[n], wire.zeeman_y, wire.zeeman_z[n]); };
+    const TermsOfSites<N> terms(of);
+    auto A = [&](int n) { return onsite<Block>(terms(n), wire.V[n], wire.zeeman_x[n], wire.zeeman_y, wire.zeeman_z[n]); };
     EndBlocks<N, Block> s = first_two_sites<N>(A(0), A(1));
     decltype(s.growth) before = 1.0;
     for (int n = 2; n < wire.sites; ++n) {

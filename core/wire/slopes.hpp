@@ -63,8 +63,10 @@ CORE_INLINE void differentiate_site(EndSlopes<N>& d, const Block4<N>& Y, const S
 template <class N>
 inline EndBlocks<N> eliminate_inner_sites_with_slopes(const WireView& wire, const Terms<N>& of, N normal_slope,
                                                       N anomalous_slope, EndSlopes<N>& d) {
-    auto A = [&](int n) { return onsite<Symmetric4<N>>(at_site(of, n), wire.V[n], wire.zeeman_x[n], 0.0, wire.zeeman_z[n]); };
-    auto dA = [&](int n) { return onsite_slope(normal_slope, n % 2 == 1 ? -anomalous_slope : anomalous_slope); };
+    const TermsOfSites<N> terms(of);
+    auto A = [&](int n) { return onsite<Symmetric4<N>>(terms(n), wire.V[n], wire.zeeman_x[n], 0.0, wire.zeeman_z[n]); };
+    const N signed_slope[2] = {anomalous_slope, -anomalous_slope};
+    auto dA = [&](int n) { return onsite_slope(normal_slope, signed_slope[n % 2]); };
     EndBlocks<N> s = first_two_sites<N>(A(0), A(1));
     d.E = dA(0), d.D = dA(1);
     for (int k = 0; k < 16; ++k) d.C(k / 4, k % 4) = 0.0;
