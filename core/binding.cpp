@@ -35,13 +35,11 @@ template <class N> using ArrayOf = nb::ndarray<nb::numpy, N, nb::c_contig, nb::d
 using Array = ArrayOf<double>;
 using ComplexArray = ArrayOf<Amplitude>;
 
+// NumPy makes it, in huge pages where it is large: the system hands out small ones slower than they are filled.
 template <class N = double>
-ArrayOf<N> new_array(std::vector<size_t> shape) {
-    size_t size = 1;
-    for (size_t n : shape) size *= n;
-    auto* data = new N[size];
-    nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<N*>(p); });
-    return ArrayOf<N>(data, shape.size(), shape.data(), owner);
+ArrayOf<N> new_array(const std::vector<size_t>& shape) {
+    const char* type = std::is_same_v<N, double> ? "float64" : "complex128";
+    return nb::cast<ArrayOf<N>>(nb::module_::import_("numpy").attr("empty")(shape, type));
 }
 
 // The columns of `parameters` are those of solver/compiled.py.
