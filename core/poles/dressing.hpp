@@ -29,6 +29,7 @@ struct Levels {
     FarLevels far;
 
     Levels(const LevelList& of, double window) : far(of, window) {
+        E.reserve(of.size()), weight.reserve(of.size()), products.reserve(of.size());
         for (const Level& level : of)
             if (!far.takes(level)) {
                 E.push_back(level.E);

@@ -47,10 +47,6 @@ inline Conductances<PoleComplex> residues(const Leads& leads, Batch& b) {
     Ends8 v, y, c[CHANNELS], f[CHANNELS];
     b.S.fill(leads.inverse, b.z);
     b.S.multiply(b.t, v);
-    for (int l = 0; l < POLES; ++l) {
-        Amplitude over = 1.0 / std::sqrt(Amplitude(b.norm.re[l], b.norm.im[l]));
-        for (auto& entry : v) Batch::set(entry, l, Amplitude(entry.re[l], entry.im[l]) * over);
-    }
     b.S.fill(leads.gamma, b.z);
     b.S.multiply(v, y);
     split_channels(y, c);
@@ -63,10 +59,11 @@ inline Conductances<PoleComplex> residues(const Leads& leads, Batch& b) {
         P[2 * end][2 * end + 1] = start;
     }
     for (auto& x : f) b.M.solve_lower(x);
+    PoleComplex over = inverse(b.norm);  // v is √norm times the pole's
     for (int a = 0; a < CHANNELS; ++a) {
         P[a][a] = PoleComplex(0.0);
         for (int o = a + 1; o < CHANNELS; ++o)
-            P[a][o] = P[o][a] = b.M.add_product(f[a], f[o], a / 2 == o / 2 ? P[a][o] : PoleComplex(0.0));
+            P[a][o] = P[o][a] = over * b.M.add_product(f[a], f[o], a / 2 == o / 2 ? P[a][o] : PoleComplex(0.0));
     }
     return lossless_conductances(P);
 }
