@@ -144,10 +144,12 @@ struct Lanes {
 
     CORE_INLINE static Lanes load(const double* from) {
         Lanes x;
-        std::memcpy(x.r, from, sizeof x.r);
+        for (int i = 0; i < REGISTERS; ++i) std::memcpy(&x.r[i], from + i * REGISTER, sizeof(Register));
         return x;
     }
-    CORE_INLINE void store(double* to) const { std::memcpy(to, r, sizeof r); }
+    CORE_INLINE void store(double* to) const {
+        for (int i = 0; i < REGISTERS; ++i) std::memcpy(to + i * REGISTER, &r[i], sizeof(Register));
+    }
 
     CORE_INLINE double operator[](int lane) const { return r[lane / REGISTER][lane % REGISTER]; }
     CORE_INLINE void set(int lane, double x) { r[lane / REGISTER][lane % REGISTER] = x; }
