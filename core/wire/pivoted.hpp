@@ -56,6 +56,7 @@ inline std::vector<Amplitude> pivoted_columns(const RotatedWire& wire, const Com
         for (int j = 0; j < 8; ++j)
             if (i / 4 == j / 4) at(row_of(i), row_of(j)) -= sigma(i, j);
     }
+    constexpr double ROUNDING = 2.2e-16;  // of M; a pivot that vanishes is known no better
     for (int k = 0; k < n; ++k) {
         int last = std::min(n, k + BELOW + 1), end = std::min(n, k + 2 * BELOW + 1), pivot = k;
         for (int i = k + 1; i < last; ++i)
@@ -64,6 +65,7 @@ inline std::vector<Amplitude> pivoted_columns(const RotatedWire& wire, const Com
             for (int j = k; j < end; ++j) std::swap(at(k, j), at(pivot, j));
             for (int r = 0; r < RHS; ++r) std::swap(X[size_t(k) * RHS + r], X[size_t(pivot) * RHS + r]);
         }
+        if (at(k, k) == 0.0) at(k, k) = ROUNDING;  // a level at ω of a wire whose leads are closed
         for (int i = k + 1; i < last; ++i) {
             Amplitude factor = at(i, k) / at(k, k);
             if (factor == 0.0) continue;

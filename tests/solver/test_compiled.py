@@ -101,3 +101,13 @@ def test_a_variant_that_the_cpu_lacks_is_refused_in_one_sentence(monkeypatch):
 def test_a_core_that_was_not_built_is_said_in_one_sentence():
     with pytest.raises(ImportError, match=r"not built for this Python .* run `make setup`"):
         compiled.variant("neon")
+
+
+def test_a_level_of_a_closed_wire_reflects_nothing_that_comes_in():
+    """Of a wire whose leads have no open channel, at a level to the last digit: M is singular."""
+    wire = Nanowire(
+        np.array([-2.2, 0.05]), alpha=0.0, gamma=0.0, barrier=(0, 0), mass=0.3, lead_mu=25.0
+    )
+    mu, zero = np.array([-0.1595866250045771]), np.zeros(1)
+    assert (compiled.reflection_determinant([wire], mu, zero) == 1).all()
+    assert (compiled.real_conductance([wire], mu, zero, zero) == 0).all()
