@@ -96,6 +96,15 @@ inline void set_ends(Ends& G, int lane, const EndMatrix& one) {
         for (int j = Ends::SYMMETRIC ? i : 0; j < 8; ++j) G(i, j).re.set(lane, one(i, j).real()), G(i, j).im.set(lane, one(i, j).imag());
 }
 
+// Whether a lane's G is a number: where leads are closed, a level of the whole at ω makes it none.
+template <class Ends>
+inline bool is_number(const Ends& G, int lane) {
+    double total = 0.0;
+    for (int i = 0; i < 8; ++i)
+        for (int j = 0; j < 8; ++j) total += G(i, j).re[lane] + G(i, j).im[lane];
+    return std::isfinite(total);
+}
+
 // G and the leads of LANES pairs (μ, ω) from `first` on, those that lost digits solved by pivoting.
 template <class A, class Use>
 inline void solve_pairs(const Grid& grid, const FieldOf<A>& field, int first, double growth_limit, Use use) {
@@ -113,7 +122,7 @@ inline void solve_pairs(const Grid& grid, const FieldOf<A>& field, int first, do
     auto G = attach_leads(ends, leads);
     int count = std::min(A::LANES, pairs - first);
     for (int l = 0; l < count; ++l)
-        if (!(ends.growth[l] < growth_limit)) {  // NaN too
+        if (!(ends.growth[l] < growth_limit) || !is_number(G, l)) {
             int e = (first + l) % energies;
             ComplexTerms one = A::one(kinetic(first + l), field.pairing[e], field.hop);
             set_ends(G, l, pivoted_ends(field.wire, one, on_the_ends(field.leads[e])));
