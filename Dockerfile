@@ -27,11 +27,10 @@ COPY --from=build /artifact/.venv .venv
 COPY . .
 # For any user that `docker run --user` names; scripts/container.mk says how root is left.
 RUN cp scripts/container.mk GNUmakefile && mkdir --mode=1777 build
-# All caches (Numba, Matplotlib, Keras, pytest, …) go where that user can write.
+# All caches (Matplotlib, Keras, pytest, …) go where that user can write.
 ENV HOME=/artifact/build/.cache \
     XDG_CACHE_HOME=/artifact/build/.cache \
     MPLCONFIGDIR=/artifact/build/.cache/matplotlib \
-    NUMBA_CACHE_DIR=/artifact/build/.cache/numba \
     HYPOTHESIS_STORAGE_DIRECTORY=/artifact/build/.cache/hypothesis \
     PYTEST_ADDOPTS="-o cache_dir=/artifact/build/.cache/pytest" \
     RUFF_CACHE_DIR=/artifact/build/.cache/ruff \

@@ -97,7 +97,7 @@ test: $(READY) ## run the tests
 	$(VENV_PYTHON) -m pytest -n 2 --dist worksteal
 
 sanitize: $(READY) ## run the tests of the compiled core with bad accesses and overflows caught (gcc's g++)
-	@sh scripts/sanitize.sh tests/solver/test_compiled.py
+	@sh scripts/sanitize.sh tests/solver/test_compiled.py tests/solver/test_levels.py tests/solver/test_thermal_poles.py
 
 lint: $(READY) ## check style and types
 	.venv/bin/ruff check .

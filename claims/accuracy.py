@@ -21,7 +21,6 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import numba
 import numpy as np
 from matplotlib import style
 from matplotlib.figure import Figure
@@ -157,7 +156,9 @@ def study(wires: int, workers: int, folder: Path) -> dict[str, FloatArray]:
 def _fingerprint() -> str:
     """Return a name for the results of these very solvers and cases, so that no others are read."""
     root = Path(__file__).parents[1]
-    paths = [*root.glob("src/disorder_landscape/physics/*.py"), *root.glob("core/**/*.hpp")]
+    package = root / "src" / "disorder_landscape"
+    paths = [path for room in ("physics", "solver") for path in package.glob(f"{room}/*.py")]
+    paths += root.glob("core/**/*.hpp")
     text = [path.read_bytes() for path in sorted(paths)]
     text += [inspect.getsource(function).encode() for function in (random_case, measure)]
     text.append(repr([SEED, TEMPERATURES, BIASES, BIAS_MAX, BRUTE, FINER, BELOW_GAP]).encode())
@@ -186,7 +187,7 @@ def _read_chunk(path: Path) -> dict[str, FloatArray]:
 def _start_worker() -> None:
     """Keep a worker to one thread, and leave Ctrl-C to the process that waits for it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    numba.set_num_threads(1)
+    core.set_threads(1)
     threadpool_limits(1)
 
 

@@ -25,7 +25,7 @@ from tqdm import tqdm
 
 from disorder_landscape import Nanowire
 from disorder_landscape.arguments import ArgumentError, require
-from disorder_landscape.physics import kwant_solver, tilted_average, tilted_field
+from disorder_landscape.physics import kwant_solver, tilted_average
 from disorder_landscape.physics.parameters import BOLTZMANN, PARAMETER_RANGES, FloatArray
 from disorder_landscape.physics.quadrature import thermal_quadrature
 from disorder_landscape.physics.transport import BELOW_GAP
@@ -117,7 +117,7 @@ def compare_with_kwant(seed: int, index: int) -> dict[str, Any]:
     if theta == 0:
         found = solve([wire], mu, B, omega)
     else:
-        found = tilted_field.bare_conductance([wire], mu, B, omega, theta)
+        found = compiled.tilted_conductance([wire], mu, B, omega, theta)
     return {
         "index": index,
         "error": _largest(found - exact),
@@ -196,7 +196,9 @@ def _study(
 def _fingerprint() -> str:
     """Return a name for the results of these very solvers and cases."""
     root = Path(__file__).parents[1]
-    paths = [*root.glob("src/disorder_landscape/physics/*.py"), *root.glob("core/**/*.hpp")]
+    package = root / "src" / "disorder_landscape"
+    paths = [path for room in ("physics", "solver") for path in package.glob(f"{room}/*.py")]
+    paths += root.glob("core/**/*.hpp")
     return hashlib.sha256(
         b"\n".join(path.read_bytes() for path in [*sorted(paths), Path(__file__)])
     ).hexdigest()[:12]

@@ -2,8 +2,6 @@
 //
 // CORE_VARIANT and CORE_MODULE are set by CMakeLists.txt: this file is compiled once per variant.
 // Arrays come from solver/compiled.py, which checks them; here only their shapes are trusted.
-#include <nanobind/nanobind.h>
-#include <nanobind/ndarray.h>
 #include <nanobind/stl/complex.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
@@ -13,6 +11,7 @@
 #include <exception>
 #include <mutex>
 
+#include "binding.hpp"
 #include "derivatives/gradient.hpp"
 #include "isolated.hpp"
 #include "processor.hpp"
@@ -27,30 +26,8 @@ namespace {
 
 using namespace core;
 
-using Vector = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-using Matrix = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using Biases = nb::ndarray<const std::int64_t, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
 using LeadSlopesArray = nb::ndarray<const Amplitude, nb::shape<-1, -1, 2, 2, 2, 2, 2>, nb::c_contig, nb::device::cpu>;
-template <class N> using ArrayOf = nb::ndarray<nb::numpy, N, nb::c_contig, nb::device::cpu>;
-using Array = ArrayOf<double>;
-using ComplexArray = ArrayOf<Amplitude>;
-
-// NumPy makes it, in huge pages where it is large: the system hands out small ones slower than they are filled.
-template <class N = double>
-ArrayOf<N> new_array(const std::vector<size_t>& shape) {
-    const char* type = std::is_same_v<N, double> ? "float64" : "complex128";
-    return nb::cast<ArrayOf<N>>(nb::module_::import_("numpy").attr("empty")(shape, type));
-}
-
-// The columns of `parameters` are those of solver/compiled.py.
-std::vector<Wire> wires_of(const Matrix& V, const Matrix& parameters) {
-    std::vector<Wire> wires;
-    for (size_t w = 0; w < V.shape(0); ++w) {
-        const double* p = parameters.data() + w * parameters.shape(1);
-        wires.push_back({int(V.shape(1)), V.data() + w * V.shape(1), p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8]});
-    }
-    return wires;
-}
 
 // Run a computation in threads of its own, and look for Ctrl-C ten times a second.
 template <class Work>
@@ -169,6 +146,34 @@ ComplexArray lead_self_energies(Matrix V, Matrix parameters, double B, Vector om
     return out;
 }
 
+// The weights of a smooth function's values at the plan's nodes ω_k, then −ω_k, in its thermal averages, shape
+// (bias, 2·node).
+Array thermal_weights(Vector bias, double kT, int nodes) {
+    EnergyPlan plan(bias.data(), int(bias.size()), kT, nodes);
+    Array out = new_array({bias.size(), 2 * size_t(nodes)});
+    for (size_t v = 0; v < bias.size(); ++v) std::copy(plan.weights[v].begin(), plan.weights[v].end(), out.data() + v * 2 * nodes);
+    return out;
+}
+
+// The same in the polynomial through them, at energies u in units of the window, shape (u, 2·node).
+Array interpolation_weights(Vector u, int nodes) {
+    Array out = new_array({u.size(), 2 * size_t(nodes)});
+    for (size_t k = 0; k < u.size(); ++k) {
+        auto weights = detail::interpolated({u.data()[k]}, {1.0}, nodes);
+        std::copy(weights.begin(), weights.end(), out.data() + k * 2 * nodes);
+    }
+    return out;
+}
+
+ComplexArray trigamma_of(ArrayIn<Amplitude, 2> z) {
+    auto out = new_array<Amplitude>({z.shape(0), z.shape(1)});
+    for (size_t k = 0; k < z.size(); ++k) {
+        Complex<double> psi = trigamma(Complex<double>(z.data()[k].real(), z.data()[k].imag()));
+        out.data()[k] = {psi.re, psi.im};
+    }
+    return out;
+}
+
 }  // namespace
 
 NB_MODULE(CORE_MODULE, m) {
@@ -199,4 +204,9 @@ NB_MODULE(CORE_MODULE, m) {
           nb::arg("B"), nb::arg("x"), nb::arg("y"), nb::arg("theta"));
     m.def("lead_self_energies", &lead_self_energies, nb::arg("V"), nb::arg("parameters"), nb::arg("B"), nb::arg("omega"),
           nb::arg("theta"));
+    m.def("thermal_weights", &thermal_weights, nb::arg("bias"), nb::arg("kT"), nb::arg("nodes"));
+    m.def("interpolation_weights", &interpolation_weights, nb::arg("u"), nb::arg("nodes"));
+    m.def("trigamma", &trigamma_of, nb::arg("z"));
+    nb::module_ internals = m.def_submodule("internals", "What is tested of the core but never called in earnest.");
+    core::bind_internals(internals);
 }

@@ -83,7 +83,7 @@ def grid_in(
     """
     must = f"be a number or an increasing list of numbers in {unit}"
     try:
-        # a copy, contiguous and writable: what the kernels are compiled for
+        # a copy, contiguous: what the core takes
         grid = np.array(values, dtype=np.float64, order="C", ndmin=1)
     except (TypeError, ValueError, OverflowError):
         raise ArgumentError(name, must, "it holds something else") from None

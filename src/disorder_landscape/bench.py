@@ -6,15 +6,14 @@ from collections.abc import Callable, Mapping
 from importlib.metadata import version
 from typing import Any
 
-import numba as nb
 import numpy as np
-from llvmlite.binding import get_host_cpu_name
 from numpy.typing import ArrayLike
 from threadpoolctl import threadpool_limits
 
 from disorder_landscape import stopwatches
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset.store import PACKAGES
+from disorder_landscape.machine import cores, cpu_name
 from disorder_landscape.physics.disorder import disorder_realization
 from disorder_landscape.physics.parameters import ALPHA_RANGE, TEMPERATURE, Nanowire
 from disorder_landscape.physics.thermal import thermal_grid
@@ -43,7 +42,7 @@ MEMORY = tuple(DatasetConfig(realizations=n, sites=100) for n in (50, 200))
 """Datasets that are generated to see the memory it takes."""
 
 Progress = Callable[[int], object]
-"""Told 1 after each turn; the first, which compiles and is not counted, is one more."""
+"""Told 1 after each turn; the first, which warms up and is not counted, is one more."""
 
 
 def measure(repeats: int, told: Progress = lambda done: None) -> dict[str, Any]:
@@ -64,7 +63,7 @@ def measure(repeats: int, told: Progress = lambda done: None) -> dict[str, Any]:
     grids = {name: (config.mu, config.B) for name, config in DATASETS.items()}
     five, grid = wires["5 components"], grids["5 components"]
     few = grid[0][2::5], grid[1][2::5]
-    threads = min(THREADS, nb.config.NUMBA_NUM_THREADS)
+    threads = min(THREADS, cores())
     watches = {
         "Kwant, per energy": stopwatches.kwant(five[0], *grid),
         "per energy": stopwatches.bare(five[0], *grid),
@@ -89,7 +88,7 @@ def measure(repeats: int, told: Progress = lambda done: None) -> dict[str, Any]:
     times = {name: float(np.median(of)) for name, of in seconds.items()}
     kwant_set = PAPER_ENERGIES * np.array(seconds["Kwant, per energy"])
     return {
-        "machine": {"cpu": get_host_cpu_name(), "cores": nb.config.NUMBA_DEFAULT_NUM_THREADS},
+        "machine": {"cpu": cpu_name(), "cores": cores()},
         "versions": {name: version(name) for name in (*PACKAGES, "kwant")},
         "repeats": repeats,
         "seconds": seconds,
@@ -135,7 +134,7 @@ def _in_turn(
     for turn in range(repeats + 1):
         for name, watch in watches.items():
             taken = watch()
-            if turn > 0:  # the first compiles, or reads what has been compiled
+            if turn > 0:  # the first warms up
                 seconds[name].append(taken)
         told(1)
     return seconds

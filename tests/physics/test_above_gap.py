@@ -9,7 +9,6 @@ from numpy.testing import assert_allclose
 from disorder_landscape import Nanowire
 from disorder_landscape.physics import hamiltonian as h
 from disorder_landscape.physics import kwant_solver
-from disorder_landscape.physics.leads import lead_self_energies
 from disorder_landscape.solver import compiled
 from random_wires import fields, mus, random_wire, seeds
 
@@ -39,7 +38,7 @@ def dense_conductance(wire, mu, B, omega):
     for site, V in enumerate(wire.potential_with_barriers):
         block = slice(4 * site, 4 * site + 4)
         H[block, block] = uniform + V * h.TAU_Z
-    sigma = lead_self_energies(wire, B, np.array([omega]))[0]
+    sigma = compiled.lead_self_energies(wire, B, np.array([omega]))[0]
     roots = []
     for lead, site in ((0, 0), (1, n - 1)):
         for charge in (0, 1):

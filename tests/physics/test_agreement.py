@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 from scipy.optimize import brentq
 
 from disorder_landscape import Nanowire, conductance, topological_visibility
-from disorder_landscape.physics import hamiltonian, kwant_solver, leads, tilted_field
+from disorder_landscape.physics import hamiltonian, kwant_solver
 from disorder_landscape.solver import compiled
 from random_wires import energies, fields, mus, random_wire, seeds
 
@@ -76,7 +76,7 @@ def test_lead_self_energies_are_those_of_kwant(alpha, B, lead_mu):
     wire = Nanowire(np.zeros(2), alpha=alpha, lead_mu=lead_mu)
     system = kwant_solver.build_system(wire)
     for omega in (0.0, 0.03):
-        sigma = leads.lead_self_energies(wire, B, np.array([omega]))[0]
+        sigma = compiled.lead_self_energies(wire, B, np.array([omega]))[0]
         for lead in (0, 1):
             expected = system.leads[lead].selfenergy(omega, params={"B": B})
             ours = np.zeros((4, 4), dtype=complex)
@@ -177,7 +177,7 @@ def test_majorana_modes_leave_enough_digits_at_zero_energy(name):
     for found in (
         compiled.real_conductance(*arguments, omega),
         compiled.complex_conductance(*arguments, omega),
-        tilted_field.bare_conductance(*arguments, omega, 1e-15),
+        compiled.tilted_conductance(*arguments, omega, 1e-15),
     ):
         assert_allclose(found, kwant, atol=1e-11)
     assert_allclose(
@@ -213,7 +213,7 @@ def test_self_energies_hold_at_band_edges_and_crossings(B, lead_alpha, off):
     lowest = 2 * t - 2 * np.hypot(t, s)
     for edge in (zeeman, -zeeman, 4 * t + zeeman, 4 * t - zeeman, lowest, 4 * t - lowest):
         wire = Nanowire(np.zeros(2), lead_alpha=lead_alpha, lead_mu=edge + off)
-        sigma = leads.lead_self_energies(wire, B, np.zeros(1))[0, 1, 0]
+        sigma = compiled.lead_self_energies(wire, B, np.zeros(1))[0, 1, 0]
         T = np.array([[-t, -s], [s, -t]])
         onsite = (2 * t - wire.lead_mu) * np.eye(2) + zeeman * np.array([[0, 1], [1, 0]])
         expected = T @ np.linalg.inv(-onsite - sigma) @ T.T
@@ -228,8 +228,9 @@ def test_the_outgoing_modes_are_those_that_decay_a_little_above_the_axis():
         t = 10 ** rng.uniform(-1, 3)
         s, zeeman = t * 10 ** rng.uniform(-4, 1), t * 10 ** rng.uniform(-4, 0.3)
         mu = rng.choice([0.0, 4 * t, 2 * t]) + t * rng.choice([-1, 1]) * 10 ** rng.uniform(-3, 0)
-        sigma = np.empty((2, 2), dtype=complex)
-        leads.electron_self_energy(0.0, t, s, zeeman, mu, sigma)
+        parameters = np.array([[t, 0.0, 0.0, 0.0, 1.0, mu, s, zeeman, 0.0]])
+        arguments = np.zeros((1, 2)), parameters, 1.0, np.zeros(1), 0.0
+        sigma = compiled.core.lead_self_energies(*arguments)[0, 1, 0]
         T = np.array([[-t, -s], [s, -t]], dtype=complex)
         H = (2 * t - mu) * np.eye(2) + zeeman * np.array([[0, 1], [1, 0]])
         step, back, surface = T.copy(), T.T.copy(), H - 1e-9j * t * np.eye(2)

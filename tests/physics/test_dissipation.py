@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from disorder_landscape import Nanowire, conductance, topological_visibility
 from disorder_landscape.arguments import ArgumentError
-from disorder_landscape.physics import kwant_solver, tilted_field
+from disorder_landscape.physics import kwant_solver
 from disorder_landscape.physics.gradient import conductance_gradient
 from disorder_landscape.solver import compiled
 from random_wires import energies, fields, mus, random_wire, seeds
@@ -27,7 +27,7 @@ def test_three_routes_agree(seed, mu, B, omega, dissipation):
     at = [wire], np.array([mu]), np.array([B]), np.array([omega])
     G = kwant_solver.bare_conductance(*at)
     assert_allclose(compiled.complex_conductance(*at), G, atol=1e-8, rtol=0)
-    assert_allclose(tilted_field.bare_conductance(*at, 0.0), G, atol=1e-8, rtol=0)
+    assert_allclose(compiled.tilted_conductance(*at, 0.0), G, atol=1e-8, rtol=0)
 
 
 @pytest.mark.parametrize("theta", [0.0, 0.7])

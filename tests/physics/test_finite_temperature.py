@@ -8,7 +8,6 @@ import disorder_landscape as dl
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset.realizations import realization
-from disorder_landscape.physics import dense_levels, energy_plan
 from disorder_landscape.physics.disorder import disorder_realization, potential_from_components
 from disorder_landscape.physics.parameters import BIAS
 from disorder_landscape.physics.quadrature import thermal_quadrature
@@ -173,7 +172,7 @@ def test_the_number_of_threads_leaves_no_trace(grid, whole):
 
 
 def test_what_memory_held_before_leaves_no_trace():
-    """Numba once released arrays in use: sets that need many nodes differed from call to call."""
+    """Nor what an earlier set of many nodes left in the arrays that a thread keeps."""
     rng = np.random.default_rng(5)
     wires = [dl.Nanowire(disorder_realization(rng, 5, 300)[1], alpha=a) for a in (6.0, 7.0, 9.0)]
     grid = wires, np.linspace(0, 0.6, 5), np.array([0.3, 0.5]), np.array(BIAS), 0.05
@@ -296,10 +295,10 @@ def test_levels_denser_than_the_nodes_are_seen(name):
 
 def test_the_sets_own_checks_lie_in_the_gaps_of_its_densest_levels():
     window, E = 0.08, 0.08 * np.array([0.1, 0.5, 0.51, 0.53, 0.54, 0.55, 0.9, 1.2])
-    weight, out = np.ones((E.size, 8)), np.empty(energy_plan.SOUGHT)
-    dense_levels.dense_energies(E[::-1].copy(), weight, 12.7, window, out)
+    weight, of_core = np.ones((E.size, 8)), compiled.core.internals
+    out = of_core.dense_energies(E[::-1].copy(), weight, 12.7, window)
     assert 0.51 < out[0] / window < 0.53
-    assert out[1] == window * np.sin(dense_levels.ELSEWHERE[1] * np.pi / 2)
+    assert out[1] == window * np.sin(of_core.ELSEWHERE[1] * np.pi / 2)
     weight[2:4] = 0.0  # unseen levels do not count
-    dense_levels.dense_energies(E, weight, 12.7, window, out)
+    out = of_core.dense_energies(E, weight, 12.7, window)
     assert 0.55 < out[0] / window < 0.9

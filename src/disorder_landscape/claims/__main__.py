@@ -37,8 +37,9 @@ from disorder_landscape.claims.table import (
     verdict,
 )
 from disorder_landscape.files import check_writable, replacing, write_json
+from disorder_landscape.machine import cores, cpu_name
 
-VERSIONS = ("disorder-landscape", "numpy", "scipy", "numba", "keras", "kwant")
+VERSIONS = ("disorder-landscape", "numpy", "scipy", "keras", "kwant")
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -70,13 +71,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 def _measure(found: Sequence[Finding]) -> dict[str, dict[str, Any]]:
     """Return value, minutes, machine and versions of each quick measurement, by id."""
-    from llvmlite.binding import get_host_cpu_name
-
     from disorder_landscape.claims.measurements import measure
-    from disorder_landscape.claims.measurements_of_time import cores
 
     made_by = {
-        "machine": f"{get_host_cpu_name()}, {cores()} cores",
+        "machine": f"{cpu_name()}, {cores()} cores",
         **{f"version_{name}": version(name) for name in VERSIONS},
     }
     quick = [one.claim for one in found if one.claim.measured is not None and _can(one.claim)]

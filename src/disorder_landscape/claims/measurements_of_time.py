@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import time
 
-import numba as nb
 import numpy as np
 from threadpoolctl import threadpool_limits
 
 from disorder_landscape import stopwatches
 from disorder_landscape.bench import DATASETS, PAPER_ENERGIES
 from disorder_landscape.claims.measurements_of_models import sets_and_training_hours
+from disorder_landscape.machine import cores
 from disorder_landscape.physics import disorder, kwant_solver
 from disorder_landscape.physics.parameters import (
     ALPHA_RANGE,
@@ -26,12 +26,7 @@ from disorder_landscape.physics.parameters import (
 from disorder_landscape.physics.transport import exact_average
 
 TURNS = 5
-"""Turns of a stopwatch, of which the median counts; the first, which compiles, is one more."""
-
-
-def cores() -> int:
-    """Return how many cores this machine has."""
-    return int(nb.config.NUMBA_DEFAULT_NUM_THREADS)
+"""Turns of a stopwatch, of which the median counts; the first, which warms up, is one more."""
 
 
 def kwant_set_seconds() -> float:
@@ -99,7 +94,7 @@ def _core_seconds(threads: int) -> stopwatches.Stopwatch:
     wires, (mu, B) = _wires(), _grid()
 
     def watch() -> float:
-        with stopwatches.threads_at_work(min(threads, nb.config.NUMBA_NUM_THREADS)):
+        with stopwatches.threads_at_work(min(threads, cores())):
             started = time.process_time()
             exact_average(wires, mu, B, stopwatches.BIASES, TEMPERATURE)
             return (time.process_time() - started) / (len(wires) * mu.size * B.size)

@@ -14,7 +14,7 @@ import xarray as xr
 from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.files import replacing
 
-PACKAGES = ("disorder-landscape", "numpy", "scipy", "numba", "xarray", "h5netcdf")
+PACKAGES = ("disorder-landscape", "numpy", "scipy", "xarray", "h5netcdf")
 
 
 def provenance(command: str) -> dict[str, str]:

@@ -47,16 +47,10 @@ TAU_Z_SIGMA_Y = tau_sigma("z", "y")
 PARTICLE_HOLE = tau_sigma("y", "y")
 
 
-def pairing_factors(wire: Nanowire, omega: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return γω/√(Δ₀²−ω²) and γΔ₀/√(Δ₀²−ω²) in meV: Σ(ω) = −(first) − (second) τx."""
-    root = np.sqrt(wire.delta0**2 - omega**2)
-    return wire.gamma * omega / root, wire.gamma * wire.delta0 / root
-
-
 def self_energy(wire: Nanowire, omega: float) -> ComplexArray:
     """Return Σ(ω) of the parent superconductor, shape (4, 4), in meV; |ω| < Δ₀."""
-    normal, anomalous = pairing_factors(wire, np.asarray(omega))
-    return -normal * np.eye(4) - anomalous * TAU_X
+    factor = wire.gamma / np.sqrt(wire.delta0**2 - np.asarray(omega) ** 2)
+    return np.asarray(-factor * (omega * np.eye(4) + wire.delta0 * TAU_X))
 
 
 def zeeman(V_Z: float, theta: float) -> ComplexArray:

@@ -6,7 +6,7 @@ import numpy as np
 
 from disorder_landscape.physics.hamiltonian import PAULI, ComplexArray
 from disorder_landscape.physics.parameters import FloatArray, Nanowire
-from disorder_landscape.solver.compiled import lead_self_energies
+from disorder_landscape.solver.compiled import in_rotated_frame, lead_self_energies
 
 
 def lead_slopes(
@@ -66,14 +66,11 @@ def rotated_lead_slopes(wire: Nanowire, B: FloatArray, omega: FloatArray) -> Com
         With respect to B and α, in 1/T and 1/(meV nm).
     """
     t, s, ds = wire.hopping, wire.spin_orbit_hopping, 1 / (2 * wire.lattice)
-    hop, end = np.hypot(t, s), wire.sites - 1
+    hop, end = wire.rotated_hopping, wire.sites - 1
     sigma = np.array([lead_self_energies(wire, field, omega) for field in B])
     slopes = lead_slopes(wire, B, omega, sigma)
     i_sigma_y = np.array([[0.0, 1.0], [-1.0, 0.0]])
-    turn = np.arctan2(s, t) * end
-    U = np.cos(turn) * np.eye(2) - np.sin(turn) * i_sigma_y
-    sigma[:, :, 1] = U.T @ sigma[:, :, 1] @ U
-    slopes[:, :, :, 1] = U.T @ slopes[:, :, :, 1] @ U
+    sigma, slopes = in_rotated_frame(wire, sigma), in_rotated_frame(wire, slopes)
     turned = i_sigma_y @ sigma[:, :, 1] - sigma[:, :, 1] @ i_sigma_y
     slopes[:, :, 1, 1] += t * ds / hop**2 * end * turned
     slopes[:, :, 1] -= s * ds / hop**2 * sigma

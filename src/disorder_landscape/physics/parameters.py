@@ -114,7 +114,7 @@ class Nanowire:
 
     @property
     def rotated_hopping(self) -> float:
-        """T' = √(t² + (α/2a)²) in meV, the hopping where the spin turns along (`recursion`)."""
+        """T' = √(t² + (α/2a)²) in meV: hopping, the spin turning (core/wire/elimination.hpp)."""
         return float(np.hypot(self.hopping, self.spin_orbit_hopping))
 
     @property

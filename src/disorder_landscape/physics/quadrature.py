@@ -23,7 +23,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from disorder_landscape.arguments import require
-from disorder_landscape.physics import tilted_field
 from disorder_landscape.physics.parameters import BOLTZMANN, FloatArray, Nanowire
 from disorder_landscape.solver import compiled
 
@@ -124,7 +123,7 @@ class _BareConductance:
         self.energies += omega.size
         if self.theta != 0:
             arguments = [self.wire], self.mu, self.B, omega, self.theta
-            return np.asarray(tilted_field.bare_conductance(*arguments)[0, 0, 0])
+            return np.asarray(compiled.tilted_conductance(*arguments)[0, 0, 0])
         G0 = np.empty((omega.size, 2, 4))
         below = (omega < self.wire.delta0) & (self.wire.dissipation == 0)
         for solve, some in (

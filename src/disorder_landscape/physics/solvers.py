@@ -18,15 +18,13 @@ def solver_functions(
 ) -> tuple[BareConductance, Determinant]:
     """Return `bare_conductance` and `reflection_determinant` of "fast" or "kwant" at the angle θ.
 
-    The determinant is that of wires without dissipation. Kwant and what needs Numba are imported
-    only when they are asked for: it takes a second or two.
+    The determinant is that of wires without dissipation. Kwant is imported only when it is asked
+    for: it takes a second or two.
     """
     if name == "fast" and theta != 0:
-        from disorder_landscape.physics import tilted_field
-
         return (
-            partial(tilted_field.bare_conductance, theta=theta),
-            partial(tilted_field.reflection_determinant, theta=theta),
+            partial(compiled.tilted_conductance, theta=theta),
+            partial(compiled.tilted_determinant, theta=theta),
         )
     if name == "fast":
         bare = compiled.complex_conductance if dissipative else compiled.real_conductance

@@ -9,8 +9,8 @@ leads' self-energies, linear in energy, iΣ₀ + zΣ₁, the ends' Green's funct
 with N and K real in the basis of `tilted_levels` by particle–hole symmetry, and z_n = −z_m* in
 pairs. A probability Tr[Γ_b G_ba Γ_a G_ba†] then has the poles z_n with the residues
 b_n†Γ_a G_ba(z_n*)†Γ_b a_n, and their conjugates. Their thermal averages are trigamma functions
-(`thermal_poles`). What is left of the true conductance is smooth, some 1e-6 e²/h; its polynomial
-through Chebyshev nodes is averaged too, and compared with the truth at further energies.
+(core/thermal/trigamma.hpp). What is left of the true conductance is smooth, some 1e-6 e²/h; its
+polynomial through Chebyshev nodes is averaged too, and compared with the truth at further energies.
 """
 
 from __future__ import annotations
@@ -22,20 +22,11 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import ThreadpoolController
 
-from disorder_landscape.physics import tilted_field
 from disorder_landscape.physics.hamiltonian import ComplexArray
-from disorder_landscape.physics.leads import rotate_spin
 from disorder_landscape.physics.parameters import BOLTZMANN, FloatArray, Nanowire
-from disorder_landscape.physics.thermal_poles import (
-    REACH,
-    SERIES,
-    chebyshev_nodes,
-    interpolation_weights,
-    thermal_node_weights,
-)
-from disorder_landscape.physics.tilted_leads import tilted_lead_self_energies
 from disorder_landscape.physics.tilted_levels import BASIS, isolated_wire
 from disorder_landscape.solver import compiled
+from disorder_landscape.solver.compiled import core
 
 NODES = (10, 16, 24)
 """Numbers of energies for the levels that are tried in turn."""
@@ -120,26 +111,24 @@ class _Average:
     def __init__(self, wire: Nanowire, B: float, bias: FloatArray, kT: float, theta: float) -> None:
         self.wire, self.B, self.theta = wire, np.array([B]), theta
         self.bias, self.kT = bias, kT
-        self.window = window = abs(bias).max() + REACH * kT
-        at_checks = np.sin(np.pi * (np.arange(CHECKS) + 0.3) / (2 * CHECKS))
-        self.real = np.concatenate([chebyshev_nodes(window, SMOOTH), window * at_checks])
-        self.smooth = thermal_node_weights(bias, kT, window, SMOOTH)
-        self.check = interpolation_weights(np.concatenate([at_checks, -at_checks]), SMOOTH)
+        self.window = window = abs(bias).max() + core.REACH * kT
+        at_checks = _nodes(CHECKS, 0.3)
+        self.real = window * np.concatenate([_nodes(SMOOTH), at_checks])
+        self.smooth = core.thermal_weights(bias, kT, SMOOTH)
+        self.check = core.interpolation_weights(np.concatenate([at_checks, -at_checks]), SMOOTH)
         two = window * np.array([-1, 1]) / np.sqrt(2)
-        sigma = tilted_lead_self_energies(wire, B, two, theta)
-        angle = np.arctan2(wire.spin_orbit_hopping, wire.hopping)
-        rotate_spin(sigma, angle * (wire.sites - 1))
-        below, above = _on_the_ends(sigma)
+        sigma = compiled.lead_self_energies(wire, B, two, theta)
+        below, above = _on_the_ends(compiled.in_rotated_frame(wire, sigma))
         self.slope = (above - below) / (two[1] - two[0])
         self.sigma = below - two[0] * self.slope
 
     def __call__(self, mu: FloatArray, nodes: int) -> tuple[FloatArray, FloatArray]:
         """Return the conductances, shape (mu, bias, 4), and the estimated error, shape (mu,)."""
-        x = chebyshev_nodes(self.window, nodes)
+        x = self.window * _nodes(nodes)
         z = x + 1j * HEIGHT * self.window / nodes
         wires, theta = [self.wire], self.theta
-        F = tilted_field.isolated_green_functions(wires, mu, self.B, z, theta)[0, 0]
-        bare = tilted_field.bare_conductance(wires, mu, self.B, self.real, theta)[0, :, 0]
+        F = compiled.tilted_isolated_ends(wires, mu, self.B, z, theta)[0, 0]
+        bare = compiled.tilted_conductance(wires, mu, self.B, self.real, theta)[0, :, 0]
         some = [self._of_set(z, F[m], bare[m]) for m in range(mu.size)]
         G, error = (np.array(part) for part in zip(*some, strict=True))
         return G, np.where(np.isfinite(G).all(axis=(1, 2)), error, np.inf)
@@ -167,9 +156,9 @@ class _Average:
             np.concatenate([some[:, 0], some[:, 1]]) - 2 * (1 / (at[:, None] - z) @ residues).real
             for at, some in ((signed, bare[:SMOOTH]), (checks, bare[SMOOTH:]))
         ]
-        error = abs(self.check @ rest[0] - rest[1]).max() + compiled.core.FLOOR
+        error = abs(self.check @ rest[0] - rest[1]).max() + core.FLOOR
         unit = 2 * np.pi * self.kT
-        shares = _trigamma(0.5 + 1j * (z - self.bias[:, None]) / unit) / (1j * unit)
+        shares = core.trigamma(0.5 + 1j * (z - self.bias[:, None]) / unit) / (1j * unit)
         return 2 * (shares @ residues).real + self.smooth @ rest[0], float(error)
 
     def _poles(self, A: FloatArray, u: FloatArray) -> tuple[ComplexArray, ComplexArray]:
@@ -203,6 +192,11 @@ class _Average:
         return z, np.asarray(np.array(found).T @ WEIGHTS.T)
 
 
+def _nodes(count: int, after: float = 0.5) -> FloatArray:
+    """Return sin(π(k + after)/2·count): at ½ those of 2·count Chebyshev nodes that are positive."""
+    return np.asarray(np.sin(np.pi * (np.arange(count) + after) / (2 * count)))
+
+
 @cache
 def _controller() -> ThreadpoolController:
     """Return what knows the process's libraries: to look for them takes milliseconds."""
@@ -216,15 +210,3 @@ def _on_the_ends(sigma: ComplexArray) -> ComplexArray:
         at = slice(2 * block, 2 * block + 2)
         whole[:, at, at] = sigma[:, block // 2, block % 2]
     return whole
-
-
-def _trigamma(z: ComplexArray) -> ComplexArray:
-    """Return ψ₁(z), Re z ≥ ½, to 1e-12: by recurrence and Stirling's series (DLMF 5.15.8)."""
-    total = np.zeros_like(z)
-    for _ in range(8):
-        total += 1 / z**2
-        z = z + 1
-    series = SERIES[0] + 0j
-    for term in SERIES[1:]:
-        series = series / z**2 + term
-    return np.asarray(total + 1 / z + 1 / (2 * z**2) + series / z**3)

@@ -7,7 +7,8 @@ nodes z_k above the axis:
 
     X_k†X_l = −(F_l − F_k†)/(z_l − z_k*),   X_k†H X_l = z_l X_k†X_l − F_k†,   e†X_l = F_l.
 
-(`levels` does the same with slopes, at real energies, in a real frame that θ ≠ 0 takes away.)
+(core/poles/levels.hpp does the same with slopes, at real energies, in a real frame that θ ≠ 0
+takes away.)
 Particle–hole symmetry gives the nodes −z_k* for nothing: with sources that are their own
 antiparticles F(−z*) = −F(z)*, and X_k − X(−z_k*) and i(X_k + X(−z_k*)) are their own antiparticles
 too, so that their overlaps are real and those with H imaginary: F(z) = u(z − iA)⁻¹uᵀ, all real.
@@ -42,7 +43,7 @@ def isolated_wire(z: ComplexArray, F: ComplexArray) -> tuple[FloatArray, FloatAr
     z : array, shape (node,)
         Energies with positive real and imaginary part in meV.
     F : array, shape (node, 8, 8)
-        The ends' Green's function there in 1/meV, of `tilted_field.isolated_green_functions`.
+        The ends' Green's function there in 1/meV, of `compiled.tilted_isolated_ends`.
 
     Returns
     -------

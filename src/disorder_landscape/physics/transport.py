@@ -11,6 +11,7 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from disorder_landscape.arguments import grid_in, number_in
+from disorder_landscape.physics import tilted_average
 from disorder_landscape.physics.hamiltonian import FULL_TURN
 from disorder_landscape.physics.labels import CONDUCTANCES, labelled
 from disorder_landscape.physics.parameters import BOLTZMANN, TEMPERATURE, FloatArray, Nanowire
@@ -159,8 +160,6 @@ def exact_average(
     if theta == 0:
         G, error, energies = compiled.thermal_conductance(wires, mu, B, bias, temperature)
     else:
-        from disorder_landscape.physics import tilted_average  # Numba takes seconds to import
-
         G, error, energies = tilted_average.thermal_conductance(
             wires, mu, B, bias, temperature, theta
         )

@@ -1,5 +1,7 @@
 """The types of core/binding.cpp, of which every variant is compiled."""
 
+from types import ModuleType
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,6 +13,7 @@ FLOOR: float
 REACH: float
 NODES: list[int]
 COMPARED: int
+internals: ModuleType
 
 def instruction_set() -> str: ...
 def supported_variants() -> list[str]: ...
@@ -91,3 +94,6 @@ def tilted_isolated_ends(
 def lead_self_energies(
     V: FloatArray, parameters: FloatArray, B: float, omega: FloatArray, theta: float
 ) -> ComplexArray: ...
+def thermal_weights(bias: FloatArray, kT: float, nodes: int) -> FloatArray: ...
+def interpolation_weights(u: FloatArray, nodes: int) -> FloatArray: ...
+def trigamma(z: ComplexArray) -> ComplexArray: ...

@@ -27,6 +27,7 @@ __all__ = [
     "complex_conductance",
     "conductance_gradient",
     "core",
+    "in_rotated_frame",
     "lead_self_energies",
     "real_conductance",
     "reflection_determinant",
@@ -273,3 +274,16 @@ def lead_self_energies(
     """Return Σ of the leads, shape (energy, lead, charge, 2, 2), in meV, spin not rotated."""
     sigma: ComplexArray = core.lead_self_energies(*handed_over([wire]), B, omega, theta)
     return sigma
+
+
+def in_rotated_frame(wire: Nanowire, sigma: ComplexArray) -> ComplexArray:
+    """Return self-energies of the leads as the core attaches them, (..., lead, charge, 2, 2).
+
+    There the spin turns from site to site, by U_n = exp(−iσyφn), tan φ = α/2at
+    (core/wire/elimination.hpp): the left lead's is as it was, the right lead's becomes U†ΣU.
+    """
+    angle = np.arctan2(wire.spin_orbit_hopping, wire.hopping) * (wire.sites - 1)
+    U = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    turned = sigma.copy()
+    turned[..., 1, :, :, :] = U.T @ sigma[..., 1, :, :, :] @ U
+    return turned

@@ -6,24 +6,15 @@ from numpy.testing import assert_allclose
 from scipy.integrate import quad
 from scipy.special import polygamma
 
-from disorder_landscape.physics import thermal_poles
 from disorder_landscape.physics.parameters import BOLTZMANN
-from disorder_landscape.physics.residues import Terms, sum_poles
-from disorder_landscape.physics.vectors import WIDTH
+from disorder_landscape.solver.compiled import core
 
 KT = BOLTZMANN * 0.05
 
 
 def trigamma(z):
     """Return ψ₁ of complex numbers of real part ½ or more."""
-    full = np.pad(np.asarray(z, dtype=complex), (0, -len(z) % WIDTH), constant_values=1)
-    found = np.empty_like(full)
-    re, im = np.empty(WIDTH), np.empty(WIDTH)
-    for k in range(0, full.size, WIDTH):
-        some = full[k : k + WIDTH]
-        thermal_poles.trigamma(some.real.copy(), some.imag.copy(), re, im)
-        found[k : k + WIDTH] = re + 1j * im
-    return found[: len(z)]
+    return core.trigamma(np.array([z], dtype=complex))[0]
 
 
 def test_trigamma_on_the_real_axis():
@@ -42,11 +33,10 @@ def test_trigamma_by_recurrence_and_reflection():
 
 
 def one_pole(z, residues):
-    """Return the terms of one pole, among zeros."""
-    terms = Terms(np.zeros(8), np.full(8, -1.0), np.zeros((8, 8)), np.zeros((8, 8)))
-    terms.zr[3], terms.zi[3] = z.real, z.imag
-    terms.re[:, 3], terms.im[:, 3] = residues.real, residues.imag
-    return terms
+    """Return poles and residues, shapes (pole,) and (pole, 2, 4), all but one of them zero."""
+    poles, r = np.full(8, -1j), np.zeros((8, 2, 4), dtype=complex)
+    poles[3], r[3] = z, residues.reshape(2, 4)
+    return poles, r
 
 
 @pytest.mark.parametrize("z", [0.02 - 0.004j, -0.01 - 2e-4j, 0.0 - 0.03j, 0.3 - 1e-3j])
@@ -55,7 +45,7 @@ def test_the_thermal_average_of_a_pole(z, V):
     rng = np.random.default_rng(1)
     r = rng.normal(size=8) + 1j * rng.normal(size=8)
     found = np.ones((2, 4))
-    thermal_poles.average_poles(one_pole(z, r), np.array([V, -V]), KT, found)
+    core.internals.average_poles(*one_pole(z, r), np.array([V, -V]), KT, found)
 
     def at(omega):
         """Return the conductances at ω: of the pole, and of its mirror image."""
@@ -77,7 +67,7 @@ def test_the_thermal_average_of_a_pole(z, V):
 def test_the_sum_of_poles():
     rng = np.random.default_rng(2)
     z, r = 0.03 - 0.002j, rng.normal(size=8) + 1j * rng.normal(size=8)
-    omega, found = rng.uniform(-0.1, 0.1, 2 * WIDTH), np.empty((4, 2 * WIDTH))
-    sum_poles(omega, one_pole(z, r), found)
+    omega = rng.uniform(-0.1, 0.1, core.internals.COLUMNS)
+    found = core.internals.sum_poles(*one_pole(z, r), omega)
     mirrored = -r[4:, None].conj() / (omega + z.conjugate())
     assert_allclose(found, 2 * (r[:4, None] / (omega - z) + mirrored).real, rtol=1e-12)

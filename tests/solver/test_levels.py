@@ -1,68 +1,39 @@
 """What the exact average is made of: vectors, small eigenproblems, the levels, the poles' start."""
 
-import numba as nb
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.linalg import eigh
 from scipy.optimize import brentq
 
-from disorder_landscape.physics import eigen, finite_temperature, jacobi
-from disorder_landscape.physics.energy_plan import COMPARED, SOUGHT, energy_plan
-from disorder_landscape.physics.fast_solver import prepare
 from disorder_landscape.physics.hamiltonian import wire_hamiltonian
-from disorder_landscape.physics.levels import _complete_low_levels, wire_levels
 from disorder_landscape.physics.parameters import BIAS, BOLTZMANN
-from disorder_landscape.physics.vectors import (
-    WIDTH,
-    everywhere,
-    read,
-    roots,
-    sizes,
-    where_greater,
-    write,
-)
+from disorder_landscape.solver import compiled
 from random_wires import random_wire
+
+of_core = compiled.core.internals
+SETS, COLUMNS = of_core.SETS, of_core.COLUMNS
 
 
 def test_vectors():
-    @nb.njit
-    def calculate(a, b, out):
-        x, y = read(a, 0), read(b, 1)
-        write(out[0], 0, x + y * x - x / y)
-        write(out[1], 0, where_greater(x, y, roots(sizes(x)), everywhere(2.0)))
-
     rng = np.random.default_rng(0)
-    a, b, out = rng.normal(size=WIDTH), rng.normal(size=WIDTH + 1), np.empty((2, WIDTH))
-    calculate(a, b, out)
+    a, b = rng.normal(size=COLUMNS), rng.normal(size=COLUMNS + 1)
     y = b[1:]
+    out = of_core.lanes(a, y)
     assert_allclose(out[0], a + y * a - a / y, rtol=1e-14, atol=1e-14)
     assert_array_equal(out[1], np.where(a > y, np.sqrt(abs(a)), 2.0))
-
-
-def of_sets(arrays):
-    """Return entry k of set l at [k·WIDTH + l] of a flat array."""
-    return np.stack([a.reshape(-1) for a in arrays], axis=1).reshape(-1)
-
-
-def entries(flat, shape):
-    """Undo `of_sets`."""
-    return np.moveaxis(flat[: np.prod(shape) * WIDTH].reshape(*shape, WIDTH), -1, 0)
 
 
 @pytest.mark.parametrize("n", [1, 2, 3, 17, 96])
 def test_eigenvalues_of_pencils(n):
     rng = np.random.default_rng(n)
-    root, K = rng.normal(size=(2, WIDTH, n, n))
-    b = rng.normal(size=(WIDTH, n, 8))
+    root, K = rng.normal(size=(2, SETS, n, n))
+    b = rng.normal(size=(SETS, n, 8))
     N, K = root @ root.swapaxes(1, 2) + np.eye(n), K + K.swapaxes(1, 2)
-    U, A, rows = of_sets(np.linalg.cholesky(N)), np.empty(n * n * WIDTH), of_sets(b)
-    found, off = np.empty(n * WIDTH), np.empty(n * WIDTH)
-    eigen.reduce_pencil(U, of_sets(K), n, n, A, rows)
-    eigen.tridiagonalise(A, n, rows, found, off)
-    assert eigen.tridiagonal_levels(found, off, n, rows)
-    found, rows = entries(found, (n,)), entries(rows, (n, 8))
-    for l in range(WIDTH):
+    over = np.linalg.inv(np.linalg.cholesky(N))
+    A = over @ K @ over.swapaxes(1, 2)
+    found, _, rows = of_core.diagonalise(*of_core.tridiagonalise(A, over @ b))
+    for l in range(SETS):
         expected, vectors = eigh(K[l], N[l])
         by_size = np.argsort(found[l])
         assert_allclose(found[l, by_size], expected, atol=1e-11 * abs(expected).max())
@@ -73,21 +44,19 @@ def test_eigenvalues_of_pencils(n):
 
 def test_nan_stays_with_its_set():
     rng = np.random.default_rng(3)
-    d, e = rng.normal(size=(2, WIDTH, 9))
-    alone = of_sets(d), of_sets(e), np.ones(9 * 8 * WIDTH)
-    assert eigen.tridiagonal_levels(*alone[:2], 9, alone[2])
+    d, e = rng.normal(size=(2, SETS, 9))
+    alone = of_core.diagonalise(d, e, np.ones((SETS, 9, 8)))[0]
     d[4, 5] = np.nan
-    with_nan = of_sets(d), of_sets(e), np.ones(9 * 8 * WIDTH)
-    assert eigen.tridiagonal_levels(*with_nan[:2], 9, with_nan[2])
-    others = np.arange(WIDTH) != 4
-    assert_array_equal(entries(with_nan[0], (9,))[others], entries(alone[0], (9,))[others])
-    assert np.isnan(entries(with_nan[0], (9,))[4]).any()
+    with_nan = of_core.diagonalise(d, e, np.ones((SETS, 9, 8)))[0]
+    others = np.arange(SETS) != 4
+    assert_array_equal(with_nan[others], alone[others])
+    assert np.isnan(with_nan[4]).any()
 
 
 def test_dependent_directions_are_left_out():
     """Of wires with 3, 4 … levels, five nodes make pencils of just those levels."""
     rng = np.random.default_rng(0)
-    omega, W = np.linspace(0.1, 1.0, 5), WIDTH
+    omega, W = np.linspace(0.1, 1.0, 5), SETS
     shape = (W, omega.size, 8, 8)
     G, slope = np.zeros(shape), np.zeros(shape)
     energies, weights = [], []
@@ -105,15 +74,14 @@ def test_dependent_directions_are_left_out():
         # completeness: b bᵀ of all levels is 1, as ωG₋₋ − 1 is taken
         G[l, :, 4:, 4:] += (np.eye(4) - w[:, 4:].T @ w[:, 4:]) / omega[:, None, None]
         slope[l, :, 4:, 4:] -= (np.eye(4) - w[:, 4:].T @ w[:, 4:]) / omega[:, None, None] ** 2
-    E, weight = np.empty((W, 8 * omega.size)), np.empty((W, 8 * omega.size, 8))
-    count = wire_levels(omega, G, slope, 1e-11, E, weight)
-    assert count == 3 + W - 1
-    for l in range(W):
-        seen = np.abs(weight[l, :count]).sum(axis=1) > 1e-9
+    found = of_core.levels_from_ends(omega, G, slope)
+    assert max(E.size for E, _ in found) == 3 + W - 1
+    for l, (E, weight) in enumerate(found):
+        seen = np.abs(weight).sum(axis=1) > 1e-9
         assert seen.sum() == 3 + l
-        by_size = np.argsort(E[l, :count][seen])
-        assert_allclose(E[l, :count][seen][by_size], energies[l], atol=1e-8)
-        for mine, other in zip(weight[l, :count][seen][by_size], weights[l], strict=True):
+        by_size = np.argsort(E[seen])
+        assert_allclose(E[seen][by_size], energies[l], atol=1e-8)
+        for mine, other in zip(weight[seen][by_size], weights[l], strict=True):
             assert_allclose(np.outer(mine, mine), np.outer(other, other), atol=1e-6)
 
 
@@ -141,7 +109,7 @@ def test_low_levels_are_completed(E, found, true):
     weight = np.array([np.concatenate(pair) for pair in found])
     G = np.zeros((8, 8))
     G[4:, 4:] = np.einsum("ji,jk,j->ik", b, b, omega / (omega**2 - E**2))
-    _complete_low_levels(omega, G, E, weight)
+    weight = of_core.complete_low_levels(omega, G, E, weight)
     assert_array_equal(weight[:, :4], [a for a, _ in found])
     assert_allclose(weight[:, 4:], b, atol=1e-7)
 
@@ -150,23 +118,12 @@ def test_low_levels_are_completed(E, found, true):
 def test_the_levels_are_those_of_the_hamiltonian(mu, B):
     """Which depends on the energy: E is a level where H(E) has the eigenvalue E."""
     wire = random_wire(2, sites=60)
-    plan = energy_plan([wire], np.array([B]), np.array(BIAS), BOLTZMANN * 0.05, 12)
-    m = plan.nodes
-    data = finite_temperature._Solved(
-        np.empty((WIDTH, m, 8, 8)),
-        np.empty((WIDTH, m, 8, 8)),
-        np.empty((WIDTH, COMPARED, 8, 8), dtype=complex),
-        np.empty((WIDTH, m + COMPARED, 2, 4)),
-        np.empty((WIDTH, SOUGHT)),
-        np.empty(WIDTH),
-    )
-    problem = prepare([wire], np.array([mu]), np.array([B]), plan.omega)
-    sets = np.zeros((WIDTH, 3), dtype=np.int64)
-    finite_temperature._solve(problem, plan, sets, 0, data)
-    E, weight = np.empty((WIDTH, 8 * m)), np.empty((WIDTH, 8 * m, 8))
-    drop = finite_temperature.DROP
-    count = wire_levels(plan.omega[:m], data.isolated, data.slope, drop, E, weight)
-    assert_array_equal(E[1:, :count], np.tile(E[0, :count], (WIDTH - 1, 1)))
+    bias, kT = np.array(BIAS), BOLTZMANN * 0.05
+    window = abs(bias).max() + compiled.core.REACH * kT
+    sets = of_core.levels_of_wire(*compiled.handed_over([wire]), mu, B, bias, kT, 12)
+    E, weight = sets[0]
+    for other, _ in sets[1:]:
+        assert_array_equal(other, E)
 
     def eigenvalues(omega):
         return np.linalg.eigvalsh(wire_hamiltonian(wire, mu, B, omega))
@@ -174,12 +131,12 @@ def test_the_levels_are_those_of_the_hamiltonian(mu, B):
     def above(omega, n):
         return eigenvalues(omega)[n] - omega
 
-    at_zero, at_window = eigenvalues(0.0), eigenvalues(plan.window) - plan.window
+    at_zero, at_window = eigenvalues(0.0), eigenvalues(window) - window
     crossing = np.flatnonzero((at_zero > 0) & (at_window < 0))
-    expected = [brentq(above, 0.0, plan.window, (n,), xtol=1e-13) for n in crossing]
+    expected = [brentq(above, 0.0, window, (n,), xtol=1e-13) for n in crossing]
     assert len(expected) > 0
-    seen = plan.hop[0] * (weight[0, :count] ** 2).sum(axis=1) > 1e-8  # the others are no levels
-    found = E[0, :count][seen & (E[0, :count] < plan.window)]
+    seen = wire.rotated_hopping * (weight**2).sum(axis=1) > 1e-8  # the others are no levels
+    found = E[seen & (E < window)]
     assert_allclose(np.sort(found), np.sort(expected), atol=1e-8)
 
 
@@ -189,12 +146,10 @@ def test_jacobi_rotations(n):
     H = np.diag(rng.uniform(-0.1, 0.1, n)) - 0.01j * np.diag(rng.uniform(0.1, 1, n))
     mixing = 1e-3 * (rng.normal(size=(n, n)) + 1j * rng.normal(size=(n, n)))
     H = H + mixing + mixing.T
-    re, im, rows_re, rows_im = H.real.copy(), H.imag.copy(), np.eye(n), np.zeros((n, n))
-    assert jacobi.diagonalise_nearly(re, im, rows_re, rows_im)
-    rotated, Q = re + 1j * im, rows_re + 1j * rows_im
+    rotated, Q = of_core.diagonalise_nearly(H)
     assert_allclose(Q @ Q.T, np.eye(n), atol=1e-10)
     assert_allclose(Q @ H @ Q.T, rotated, atol=1e-12)
     distance = abs(np.diag(rotated)[:, None] - np.diag(rotated))
-    assert (abs(rotated - np.diag(np.diag(rotated))) <= jacobi.MIXING * distance + 1e-18).all()
+    assert (abs(rotated - np.diag(np.diag(rotated))) <= of_core.MIXING * distance + 1e-18).all()
     expected, found = np.linalg.eig(H)[0], np.linalg.eig(rotated)[0]
     assert_allclose(abs(found[:, None] - expected).min(axis=1), 0, atol=1e-10)
