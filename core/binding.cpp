@@ -11,7 +11,7 @@
 #include <exception>
 #include <mutex>
 
-#include "arrays.hpp"
+#include "binding.hpp"
 #include "derivatives/gradient.hpp"
 #include "isolated.hpp"
 #include "processor.hpp"

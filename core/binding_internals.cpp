@@ -7,7 +7,7 @@
 
 #include <tuple>
 
-#include "arrays.hpp"
+#include "binding.hpp"
 #include "thermal/conductance.hpp"
 
 namespace core {

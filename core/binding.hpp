@@ -1,4 +1,4 @@
-// Arrays as Python hands them to the core, and as it gets them back.
+// What the binding files share: arrays as Python hands them to the core, and as it gets them back.
 #pragma once
 
 #include <nanobind/nanobind.h>
