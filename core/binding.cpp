@@ -151,7 +151,7 @@ ComplexArray lead_self_energies(Matrix V, Matrix parameters, double B, Vector om
 Array thermal_weights(Vector bias, double kT, int nodes) {
     EnergyPlan plan(bias.data(), int(bias.size()), kT, nodes);
     Array out = new_array({bias.size(), 2 * size_t(nodes)});
-    for (size_t v = 0; v < bias.size(); ++v) std::copy(plan.weights[v].begin(), plan.weights[v].end(), out.data() + v * 2 * nodes);
+    for (size_t v = 0; v < bias.size(); ++v) std::copy_n(plan.weights[v].begin(), 2 * nodes, out.data() + v * 2 * nodes);
     return out;
 }
 
@@ -160,7 +160,7 @@ Array interpolation_weights(Vector u, int nodes) {
     Array out = new_array({u.size(), 2 * size_t(nodes)});
     for (size_t k = 0; k < u.size(); ++k) {
         auto weights = detail::interpolated({u.data()[k]}, {1.0}, nodes);
-        std::copy(weights.begin(), weights.end(), out.data() + k * 2 * nodes);
+        std::copy_n(weights.begin(), 2 * nodes, out.data() + k * 2 * nodes);
     }
     return out;
 }
