@@ -30,7 +30,7 @@ COMPILE := .venv/bin/uv pip compile --universal --python-version 3.11 --generate
 STARTED := $(shell date +%s)
 
 .PHONY: help setup generate train evaluate figures $(FIGURES) bench accuracy odd-wires study
-.PHONY: inversion-study claims claims-table report test sanitize lint lock clean
+.PHONY: inversion-study claims claims-table report test sanitize wasm lint lock clean
 .SUFFIXES:
 # One after the other: each command uses all cores by itself.
 .NOTPARALLEL:
@@ -98,6 +98,9 @@ test: $(READY) ## run the tests
 
 sanitize: $(READY) ## run the tests of the compiled core with bad accesses and overflows caught (gcc's g++)
 	@sh scripts/sanitize.sh tests/solver/test_compiled.py
+
+wasm: $(READY) ## compile the core to WebAssembly, for a page without a server: build/wasm/nanowire.wasm
+	@sh scripts/wasm.sh build/wasm/nanowire.wasm
 
 lint: $(READY) ## check style and types
 	.venv/bin/ruff check .

@@ -44,14 +44,8 @@ ArrayOf<N> new_array(std::vector<size_t> shape) {
     return ArrayOf<N>(data, shape.size(), shape.data(), owner);
 }
 
-// The columns of `parameters` are those of solver/compiled.py.
 std::vector<Wire> wires_of(const Matrix& V, const Matrix& parameters) {
-    std::vector<Wire> wires;
-    for (size_t w = 0; w < V.shape(0); ++w) {
-        const double* p = parameters.data() + w * parameters.shape(1);
-        wires.push_back({int(V.shape(1)), V.data() + w * V.shape(1), p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8]});
-    }
-    return wires;
+    return core::wires_of(int(V.shape(0)), int(V.shape(1)), V.data(), parameters.data());
 }
 
 // Run a computation in threads of its own, and look for Ctrl-C ten times a second.
@@ -179,6 +173,7 @@ NB_MODULE(CORE_MODULE, m) {
     m.attr("REACH") = core::REACH;
     m.attr("NODES") = std::vector<int>(std::begin(core::NODES), std::end(core::NODES));
     m.attr("COMPARED") = core::COMPARED;
+    m.attr("GROWTH_LIMIT") = core::GROWTH_LIMIT;
     m.def("instruction_set", [] { return CORE_TEXT(CORE_VARIANT); });
     m.def("supported_variants", &core::supported_variants);
     m.def("set_threads", [](int count) { return core::thread_count().exchange(std::max(1, count)); }, nb::arg("count"));

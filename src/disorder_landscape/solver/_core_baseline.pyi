@@ -11,6 +11,7 @@ FLOOR: float
 REACH: float
 NODES: list[int]
 COMPARED: int
+GROWTH_LIMIT: float
 
 def instruction_set() -> str: ...
 def supported_variants() -> list[str]: ...
