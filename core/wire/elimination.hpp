@@ -116,7 +116,7 @@ template <class N, class Block>
 CORE_INLINE Block eliminate_site(EndBlocks<N, Block>& s, const Block& next) {
     const auto f = factor(s.D);
 #pragma GCC unroll 4
-    for (int i = 0; i < 4; ++i) s.growth = larger(s.growth, size(f.over[i]));
+    for (int i = 0; i < 4; ++i) s.growth = larger(size(f.over[i]), s.growth);  // of a complex 0 it is NaN
     Block4<N> Z;  // of which this is the transpose: of a symmetric M W, of a Hermitian one W*
     if constexpr (!Block::MIRRORED) {
         Z = s.F_transposed;

@@ -27,29 +27,28 @@ DONE, INEXACT, BAD_COUNT, NOT_FINITE, BAD_WIRE, BAD_TEMPERATURE = range(6)
 RANDOM = [random_wire(seed) for seed in range(25)]
 
 
+def compile_to(module, sources=REPOSITORY):
+    """Compile as `make wasm` does: in five seconds, at the first time in forty."""
+    subprocess.run(["sh", "scripts/wasm.sh", module], cwd=sources, check=True)
+
+
 @pytest.fixture(scope="module")
 def wasm(tmp_path_factory):
-    """Return the module as `make wasm` compiles it: in five seconds, at the first time in forty."""
     module = tmp_path_factory.mktemp("wasm") / "nanowire.wasm"
-    subprocess.run(["sh", "scripts/wasm.sh", module], cwd=REPOSITORY, check=True)
+    compile_to(module)
     return module
 
 
-@pytest.fixture
-def call(wasm, tmp_path):
-    """Return a function that answers requests, each with its status and its arrays, flat."""
-    requests, results = tmp_path / "requests.json", tmp_path / "results.json"
+def answers_of(module, requests):
+    """Return what requests are answered: each a status and arrays, flat."""
+    asked, answered = module.with_name("requests.json"), module.with_name("answers.json")
     script = Path(__file__).with_name("wasm_check.mjs")
-
-    def call(some):
-        requests.write_text(json.dumps(some))
-        subprocess.run(["node", script, wasm, requests, results], check=True)
-        return [
-            (answer["status"], [np.frombuffer(base64.b64decode(x)) for x in answer["results"]])
-            for answer in json.loads(results.read_text())
-        ]
-
-    return call
+    asked.write_text(json.dumps(requests))
+    subprocess.run(["node", script, module, asked, answered], check=True)
+    return [
+        (answer["status"], [np.frombuffer(base64.b64decode(x)) for x in answer["results"]])
+        for answer in json.loads(answered.read_text())
+    ]
 
 
 def request(function, wires, grids, results, others=()):
@@ -68,7 +67,7 @@ def test_the_module_is_small(wasm):
     assert wasm.stat().st_size < 400_000
 
 
-def test_1000_conductances_at_zero_temperature_are_those_of_python(call):
+def test_1000_conductances_at_zero_temperature_are_those_of_python(wasm):
     """With the variant that rounds as WebAssembly does, which has no multiply-add either."""
     core, rng = compiled.variant("baseline"), np.random.default_rng(0)
     requests, expected = [], []
@@ -79,14 +78,14 @@ def test_1000_conductances_at_zero_temperature_are_those_of_python(call):
         expected.append(core.real_conductance(*arrays, mu, B, omega, compiled.GROWTH_LIMIT))
         requests.append(request("reflection_determinant", [wire], (mu, B), [8]))
         expected.append(compiled.reflection_determinant([wire], mu, B))
-    answers = call(requests)
+    answers = answers_of(wasm, requests)
     assert sum(found.size for _, (found,) in answers[::2]) == 1000 * 4
     for (status, (found,)), same in zip(answers, expected, strict=True):
         assert status == DONE
         assert_allclose(found, same.ravel(), rtol=0, atol=1e-9)
 
 
-def test_conductances_above_the_gap_and_with_dissipation_are_those_of_python(call):
+def test_conductances_above_the_gap_and_with_dissipation_are_those_of_python(wasm):
     mu, B, omega = np.array([0.2]), np.array([0.3, 0.5]), np.array([0.05, 0.2, 0.5])
     clean = RANDOM[:2]
     leaky = [Nanowire(w.potential, alpha=w.alpha, dissipation=0.01) for w in clean]
@@ -94,23 +93,22 @@ def test_conductances_above_the_gap_and_with_dissipation_are_those_of_python(cal
     below = compiled.real_conductance(clean, mu, B, omega[:1])
     everywhere = compiled.complex_conductance(leaky, mu, B, omega)
     grids = mu, B, omega
-    answers = call([request("conductance", wires, grids, [96]) for wires in (clean, leaky)])
+    answers = answers_of(
+        wasm, [request("conductance", wires, grids, [96]) for wires in (clean, leaky)]
+    )
     expected = np.concatenate([below, above], axis=3), everywhere
     for (status, (found,)), same in zip(answers, expected, strict=True):
         assert status == DONE
         assert_allclose(found, same.ravel(), rtol=0, atol=1e-9)
 
 
-def test_thermal_averages_are_those_of_python_within_their_errors(call):
+def test_thermal_averages_are_those_of_python_within_their_errors(wasm, averages):
     """To 1e-9 in most: models of few nodes take up rounding, the more the less they are sure."""
-    rng, requests, expected = np.random.default_rng(1), [], []
-    for wire in RANDOM:
-        mu, B, _ = random_points(rng, 0)
-        others = [KT, compiled.core.TOLERANCE]
-        requests.append(request("thermal_conductance", [wire], (mu, B, BIAS), [80, 4], others))
-        expected.append(compiled.thermal_conductance([wire], mu, B, np.array(BIAS), TEMPERATURE))
+    requests, expected = averages
     apart = []
-    for (status, (G, error)), (same, same_error, _) in zip(call(requests), expected, strict=True):
+    for (status, (G, error)), (same, same_error, _) in zip(
+        answers_of(wasm, requests), expected, strict=True
+    ):
         assert status == (DONE if (error <= compiled.core.TOLERANCE).all() else INEXACT)
         difference = abs(G.reshape(4, -1) - same.reshape(4, -1))
         assert (difference.max(axis=1) <= error + same_error.ravel()).all()
@@ -119,7 +117,7 @@ def test_thermal_averages_are_those_of_python_within_their_errors(call):
     assert np.median(apart) < 1e-9
 
 
-def test_the_status_says_how_it_went(call):
+def test_the_status_says_how_it_went(wasm):
     wire, leaky = RANDOM[0], Nanowire(RANDOM[0].potential, dissipation=0.01)
 
     def average(wire=wire, bias=(0.0,), kT=KT, tolerance=1e-4):
@@ -138,5 +136,51 @@ def test_the_status_says_how_it_went(call):
         (average(kT=0.0), BAD_TEMPERATURE),
         (average(kT=10 * KT), BAD_TEMPERATURE),
     ]
-    answers = call([asked for asked, _ in expected])
+    answers = answers_of(wasm, [asked for asked, _ in expected])
     assert [status for status, _ in answers] == [status for _, status in expected]
+
+
+@pytest.fixture(scope="module")
+def averages():
+    """Return requests for averages at 100 points, and what Python's core finds."""
+    rng, requests, expected = np.random.default_rng(1), [], []
+    for wire in RANDOM:
+        mu, B, _ = random_points(rng, 0)
+        others = [KT, compiled.core.TOLERANCE]
+        requests.append(request("thermal_conductance", [wire], (mu, B, BIAS), [80, 4], others))
+        expected.append(compiled.thermal_conductance([wire], mu, B, np.array(BIAS), TEMPERATURE))
+    return requests, expected
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("file", "limit", "lowered", "some_are_missed"),
+    [
+        ("poles/iteration.hpp", "ROUNDS = 8", "ROUNDS = 1", True),
+        ("poles/tridiagonal.hpp", "SWEEPS = 60", "SWEEPS = 1", True),
+        ("poles/starts.hpp", "SWEEPS = 12", "SWEEPS = 0", False),  # the iteration makes up for it
+    ],
+)
+def test_a_search_that_meets_its_limits_says_so(
+    tmp_path, averages, file, limit, lowered, some_are_missed
+):
+    """What is then found is found within its error, or not at all."""
+    shutil.copytree(REPOSITORY / "core", tmp_path / "core")
+    for name in ("scripts", ".venv"):
+        (tmp_path / name).symlink_to(REPOSITORY / name)
+    source = tmp_path / "core" / file
+    text = source.read_text()
+    assert text.count(limit) == 1
+    source.write_text(text.replace(limit, lowered))
+    module = tmp_path / "nanowire.wasm"
+    compile_to(module, tmp_path)
+    requests, expected = averages
+    answers = answers_of(module, requests)
+    missed = 0
+    for (status, (G, error)), (same, same_error, _) in zip(answers, expected, strict=True):
+        sure = error <= compiled.core.TOLERANCE
+        assert status == (DONE if sure.all() else INEXACT)
+        difference = abs(G.reshape(4, -1) - same.reshape(4, -1)).max(axis=1)
+        assert (difference <= error + same_error.ravel())[sure].all()
+        missed += (~sure).sum()
+    assert (missed > 0) == some_are_missed
