@@ -96,8 +96,9 @@ report: $(READY) ## claims, figures (those in build/figures) and conventions on 
 test: $(READY) ## run the tests
 	$(VENV_PYTHON) -m pytest -n 2 --dist worksteal
 
-sanitize: $(READY) ## run the tests of the compiled core with bad accesses and overflows caught (gcc's g++)
-	@sh scripts/sanitize.sh tests/solver/test_compiled.py
+# Node knows nothing of sanitizers.
+sanitize: $(READY) ## run all fast tests of the core with bad accesses and overflows caught (gcc's g++)
+	@sh scripts/sanitize.sh -n 2 --dist worksteal tests/solver tests/physics --ignore=tests/solver/test_wasm.py
 
 wasm: $(READY) ## compile the core to WebAssembly, for a page without a server: build/wasm/nanowire.wasm
 	@sh scripts/wasm.sh build/wasm/nanowire.wasm
