@@ -30,7 +30,7 @@ COMPILE := .venv/bin/uv pip compile --universal --python-version 3.11 --generate
 STARTED := $(shell date +%s)
 
 .PHONY: help setup generate train evaluate figures $(FIGURES) bench accuracy odd-wires study
-.PHONY: inversion-study claims claims-table report test sanitize lint lock clean
+.PHONY: inversion-study claims claims-table report test sanitize wasm lint lock clean
 .SUFFIXES:
 # One after the other: each command uses all cores by itself.
 .NOTPARALLEL:
@@ -96,8 +96,12 @@ report: $(READY) ## claims, figures (those in build/figures) and conventions on 
 test: $(READY) ## run the tests
 	$(VENV_PYTHON) -m pytest -n 2 --dist worksteal
 
-sanitize: $(READY) ## run the tests of the compiled core with bad accesses and overflows caught (gcc's g++)
-	@sh scripts/sanitize.sh tests/solver/test_compiled.py tests/solver/test_levels.py tests/solver/test_thermal_poles.py
+# Node knows nothing of sanitizers.
+sanitize: $(READY) ## run all fast tests of the core with bad accesses and overflows caught (gcc's g++)
+	@sh scripts/sanitize.sh -n 2 --dist worksteal tests/solver tests/physics --ignore=tests/solver/test_wasm.py
+
+wasm: $(READY) ## compile the core to WebAssembly, for a page without a server: build/wasm/nanowire.wasm
+	@sh scripts/wasm.sh build/wasm/nanowire.wasm
 
 lint: $(READY) ## check style and types
 	.venv/bin/ruff check .

@@ -182,6 +182,7 @@ NB_MODULE(CORE_MODULE, m) {
     m.attr("REACH") = core::REACH;
     m.attr("NODES") = std::vector<int>(std::begin(core::NODES), std::end(core::NODES));
     m.attr("COMPARED") = core::COMPARED;
+    m.attr("GROWTH_LIMIT") = core::GROWTH_LIMIT;
     m.def("instruction_set", [] { return CORE_TEXT(CORE_VARIANT); });
     m.def("supported_variants", &core::supported_variants);
     m.def("set_threads", [](int count) { return core::thread_count().exchange(std::max(1, count)); }, nb::arg("count"));

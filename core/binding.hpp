@@ -28,14 +28,8 @@ inline ArrayOf<N> new_array(const std::vector<size_t>& shape) {
     return nb::cast<ArrayOf<N>>(nb::module_::import_("numpy").attr("empty")(shape, type));
 }
 
-// The columns of `parameters` are those of solver/compiled.py.
 inline std::vector<Wire> wires_of(const Matrix& V, const Matrix& parameters) {
-    std::vector<Wire> wires;
-    for (size_t w = 0; w < V.shape(0); ++w) {
-        const double* p = parameters.data() + w * parameters.shape(1);
-        wires.push_back({int(V.shape(1)), V.data() + w * V.shape(1), p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8]});
-    }
-    return wires;
+    return wires_of(int(V.shape(0)), int(V.shape(1)), V.data(), parameters.data());
 }
 
 // What is tested of the core but never called in earnest.

@@ -87,7 +87,7 @@ public:
         Z power[FAR_TERMS];
         powers(z, power);
         for (int e = 0; e < UPPER; ++e) {
-            Z total(R(coefficient[0][e]));
+            Z total{R(coefficient[0][e])};
             for (int k = 1; k < FAR_TERMS; ++k) total = total + power[k] * R(coefficient[k][e]);
             G[e] = e < SAME ? Z(total * z) : total;
         }

@@ -23,7 +23,7 @@ struct SetData {
 
 namespace detail {
 
-inline double largest(double a, double b) { return !(b <= a) ? b : a; }  // so that NaN spreads
+inline double largest(double a, double b) { return b <= a || std::isnan(a) ? a : b; }  // NaN of either stays
 
 // What part of a difference at a check the average can have: a pole misplaced by δ shows as v²δ/(ω − z)² and
 // counts as v²δ/(kT)² in the average, so a difference is scaled down where a pole is nearer than kT.
@@ -122,8 +122,7 @@ inline double rational_average(const EnergyPlan& plan, double hop, const LevelLi
             for (int c = 0; c < 4; ++c)
                 rough = detail::largest(rough, std::abs(polynomial(weights, c) - at_checks[c][sign * COMPARED + k]) * share);
         }
-    rough *= ROUGHNESS;
-    return of_model > rough ? of_model : rough;
+    return detail::largest(of_model, ROUGHNESS * rough);
 }
 
 }  // namespace core

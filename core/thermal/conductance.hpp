@@ -199,7 +199,11 @@ inline void thermal_conductance(const Grid& grid, double kT, double tolerance, d
             size_t at = place(set);
             double* now = &found[at * values];
             energies[at] += nodes + COMPARED;
-            if (!std::isfinite(estimate[at])) std::fill(now, now + values, NAN);
+            bool numbers = std::all_of(now, now + values, [](double value) { return std::isfinite(value); });
+            if (!numbers || !std::isfinite(estimate[at])) {
+                estimate[at] = INFINITY;
+                std::fill(now, now + values, NAN);
+            }
             for (const auto& other : earlier) {
                 double apart = 0.0;
                 for (size_t k = 0; k < values; ++k) apart = detail::largest(apart, std::abs(now[k] - other[at * values + k]));

@@ -90,6 +90,13 @@ inline std::vector<double> interpolated(const std::vector<double>& u, const std:
 
 }  // namespace detail
 
+// W in meV, up to which energies count.
+inline double window_of(const double* bias, int count, double kT) {
+    double largest = 0.0;
+    for (int v = 0; v < count; ++v) largest = std::max(largest, std::abs(bias[v]));
+    return largest + REACH * kT;
+}
+
 struct EnergyPlan {
     int nodes, biases;
     double window, kT;                 // W in meV
@@ -101,9 +108,7 @@ struct EnergyPlan {
     std::vector<std::vector<double>> at_checks;  // (2·CHECKS, 2·node), of the same for its values at ± the checks
 
     EnergyPlan(const double* V, int count, double kT, int nodes) : nodes(nodes), biases(count), kT(kT), bias(V, V + count) {
-        double largest = 0.0;
-        for (double v : bias) largest = std::max(largest, std::abs(v));
-        window = largest + REACH * kT;
+        window = window_of(V, count, kT);
         for (int k = 0; k < nodes; ++k) omega.push_back(window * std::sin(std::numbers::pi * (k + 0.5) / (2 * nodes)));
         for (int k = 0; k < CHECKS; ++k) {
             double between = k == 0 ? LOWEST : double(k * (nodes - 1) / CHECKS);

@@ -21,7 +21,7 @@
 // the pivots stay moderate, C grows as 1/splitting and stays large from site to site, and the terms of
 // C D⁻¹ Cᵀ, which cancel, are of the order of |C|².  So the other measure is max|C| at one site times
 // max|C| a few sites on: where a level at ω makes C large, it is so for a site or two, and this is of
-// the order of g too.  `growth` is the larger one; what is beyond a limit is solved by pivoted.hpp.
+// the order of g too.  `growth` is the larger one; what is beyond GROWTH_LIMIT is solved by pivoted.hpp.
 #pragma once
 
 #include "../values/block4.hpp"
@@ -33,6 +33,7 @@ namespace core {
 // alone changes, a limit of 10⁷ leaves errors up to 1.3e-7 e²/h, and 1.2e-6 with a look at every sixth
 // site; the last C alone would leave 2.  None of 50,000 lanes of the paper's wires is beyond it.
 constexpr int LOOK_EVERY = 4;
+constexpr double GROWTH_LIMIT = 1e7;
 
 // What one wire is in one field, in units of t'; arrays over its sites.
 struct WireView {
@@ -107,7 +108,7 @@ template <class N, class Block>
 CORE_INLINE Block eliminate_site(EndBlocks<N, Block>& s, const Block& next) {
     const auto f = factor(s.D);
 #pragma GCC unroll 4
-    for (int i = 0; i < 4; ++i) s.growth = larger(s.growth, size(f.over[i]));
+    for (int i = 0; i < 4; ++i) s.growth = larger(size(f.over[i]), s.growth);  // of a complex 0 it is NaN
     Block4<N> Z;  // of which this is the transpose: of a symmetric M W, of a Hermitian one W*
     if constexpr (!Block::MIRRORED) {
         Z = s.F_transposed;

@@ -24,6 +24,18 @@ struct Wire {
     double angle() const { return std::atan2(spin_orbit_hopping, hopping); }  // φ
 };
 
+constexpr int PARAMETERS = 9;  // numbers that follow a wire's V, in this order
+
+// Wires of equal length: V, shape (wire, site), is not copied; parameters, shape (wire, PARAMETERS).
+inline std::vector<Wire> wires_of(int count, int sites, const double* V, const double* parameters) {
+    std::vector<Wire> wires;
+    for (int w = 0; w < count; ++w, V += sites, parameters += PARAMETERS) {
+        const double* p = parameters;
+        wires.push_back({sites, V, p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8]});
+    }
+    return wires;
+}
+
 // One wire in one field, in units of t'.
 struct RotatedWire {
     std::vector<double> V, zeeman_x, zeeman_z;

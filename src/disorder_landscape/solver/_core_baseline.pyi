@@ -14,6 +14,7 @@ REACH: float
 NODES: list[int]
 COMPARED: int
 internals: ModuleType
+GROWTH_LIMIT: float
 
 def instruction_set() -> str: ...
 def supported_variants() -> list[str]: ...

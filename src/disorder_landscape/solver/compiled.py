@@ -91,13 +91,16 @@ if not TYPE_CHECKING:
     core = variant(chosen())
 
 
-GROWTH_LIMIT = 1e7
+GROWTH_LIMIT: float = core.GROWTH_LIMIT
 """Largest inverse pivot, or product of couplings, (in units of t') up to which elimination without
 pivoting is trusted: see core/wire/elimination.hpp."""
 
 
 def handed_over(wires: Sequence[Nanowire]) -> tuple[FloatArray, FloatArray]:
-    """Return V with barriers, (wire, site), and the parameters in the order of the core's Wire."""
+    """Return V with barriers, (wire, site), and the parameters in the order of the core's Wire.
+
+    The same arrays, with their numbers, are what core/c_interface.h takes.
+    """
     V = np.array([w.potential_with_barriers for w in wires])
     parameters = [
         (
