@@ -98,7 +98,7 @@ test: $(READY) ## run the tests
 
 # Node knows nothing of sanitizers.
 sanitize: $(READY) ## run all fast tests of the core with bad accesses and overflows caught (gcc's g++)
-	@sh scripts/sanitize.sh -n 2 --dist worksteal tests/solver tests/physics --ignore=tests/solver/test_wasm.py
+	@sh scripts/sanitize.sh -n 2 --dist worksteal tests/solver tests/observables --ignore=tests/solver/test_wasm.py
 
 wasm: $(READY) ## compile the core to WebAssembly, for a page without a server: build/wasm/nanowire.wasm
 	@sh scripts/wasm.sh build/wasm/nanowire.wasm

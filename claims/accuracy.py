@@ -2,7 +2,7 @@
 
 Random wires (pristine, of 5, 10 and 30 components, weak and strong, of uncorrelated noise), each at
 a random μ, B, temperature and five biases. What `conductance` and `generate` compute is compared
-with ∫ dω G₀(ω) (−f'(ω − V)) by adaptive quadrature (`physics.quadrature`), which assumes nothing
+with ∫ dω G₀(ω) (−f'(ω − V)) by adaptive quadrature (`solver.quadrature`), which assumes nothing
 about G₀; that this has converged is shown by a finer run of some of the wires.
 
 Writes accuracy.txt, accuracy.json and accuracy.png. Interrupted, it goes on where it stopped.
@@ -32,11 +32,11 @@ from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.dataset.store import provenance
 from disorder_landscape.files import check_writable, replacing, write_json
-from disorder_landscape.physics.disorder import disorder_realization
-from disorder_landscape.physics.parameters import B_MAX, BOLTZMANN, MU_MAX, SITES, FloatArray
-from disorder_landscape.physics.quadrature import REACH, thermal_quadrature
-from disorder_landscape.physics.transport import exact_average
+from disorder_landscape.model.disorder import disorder_realization
+from disorder_landscape.model.parameters import B_MAX, BOLTZMANN, MU_MAX, SITES, FloatArray
+from disorder_landscape.observables.conductance import exact_average
 from disorder_landscape.solver.compiled import core
+from disorder_landscape.solver.quadrature import REACH, thermal_quadrature
 
 SEED = 20
 KINDS = ("pristine", "5 weak", "5 strong", "10 weak", "10 strong", "30 weak", "30 strong", "noise")
@@ -157,7 +157,7 @@ def _fingerprint() -> str:
     """Return a name for the results of these very solvers and cases, so that no others are read."""
     root = Path(__file__).parents[1]
     package = root / "src" / "disorder_landscape"
-    paths = [path for room in ("physics", "solver") for path in package.glob(f"{room}/*.py")]
+    paths = [path for room in ("model", "solver") for path in package.glob(f"{room}/*.py")]
     paths += root.glob("core/**/*.hpp")
     text = [path.read_bytes() for path in sorted(paths)]
     text += [inspect.getsource(function).encode() for function in (random_case, measure)]

@@ -25,11 +25,10 @@ from tqdm import tqdm
 
 from disorder_landscape import Nanowire
 from disorder_landscape.arguments import ArgumentError, require
-from disorder_landscape.physics import kwant_solver, tilted_average
-from disorder_landscape.physics.parameters import BOLTZMANN, PARAMETER_RANGES, FloatArray
-from disorder_landscape.physics.quadrature import thermal_quadrature
-from disorder_landscape.physics.transport import BELOW_GAP
-from disorder_landscape.solver import compiled
+from disorder_landscape.model.parameters import BOLTZMANN, PARAMETER_RANGES, FloatArray
+from disorder_landscape.observables.conductance import BELOW_GAP
+from disorder_landscape.solver import compiled, kwant_reference, tilted_average
+from disorder_landscape.solver.quadrature import thermal_quadrature
 
 CLOSE = 1e-6
 """Difference from Kwant in e²/h that is allowed."""
@@ -110,7 +109,8 @@ def compare_with_kwant(seed: int, index: int) -> dict[str, Any]:
         try:
             move = ROUNDINGS * np.finfo(np.float64).eps * (2 * wire.hopping + abs(mu))
             exact, moved = (
-                kwant_solver.bare_conductance([wire], at, B, omega, theta) for at in (mu, mu + move)
+                kwant_reference.bare_conductance([wire], at, B, omega, theta)
+                for at in (mu, mu + move)
             )
         except Exception as error:  # LAPACK, or modes that Kwant cannot tell apart
             return {"index": index, "failed": f"{type(error).__name__}: {error}"}

@@ -18,7 +18,7 @@ from disorder_landscape.inference.observation import Observation
 from disorder_landscape.inference.polish import polish
 from disorder_landscape.inference.rounds import RoundSettings, rounds
 from disorder_landscape.inference.unknowns import Gaussian
-from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.studies.inversions import (
     Task,
     carry_out,

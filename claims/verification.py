@@ -27,7 +27,7 @@ from disorder_landscape.chain import FIVE, SHIPPED, preset_run, read_test_set
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset.store import provenance
 from disorder_landscape.files import write_json
-from disorder_landscape.physics.disorder import MEAN_STD
+from disorder_landscape.model.disorder import MEAN_STD
 
 MU = np.array([0.13, 0.4])
 """In meV, between the points of the network's grid."""

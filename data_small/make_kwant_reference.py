@@ -11,9 +11,9 @@ from tqdm import tqdm
 
 from disorder_landscape import Nanowire, conductance, topological_visibility
 from disorder_landscape.dataset.store import provenance, write_dataset
-from disorder_landscape.physics.disorder import disorder_realization
-from disorder_landscape.physics.labels import labelled
-from disorder_landscape.physics.parameters import SITES
+from disorder_landscape.model.disorder import disorder_realization
+from disorder_landscape.model.parameters import SITES
+from disorder_landscape.model.quantities import labelled
 
 SEED = 2024
 GRID = {"mu": [0.0, 0.15, 0.45], "B": [0.0, 0.25, 0.5, 0.8], "bias": [-0.04, -0.01, 0.0, 0.025]}

@@ -12,7 +12,7 @@ from disorder_landscape.chain import FIVE, shipped_model
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.dataset.store import provenance, write_dataset
 from disorder_landscape.learning.model import load_model_config
-from disorder_landscape.physics.labels import CONDUCTANCES, LABELS
+from disorder_landscape.model.quantities import CONDUCTANCES, LABELS
 
 SEED, INDEX = 2026, 1
 """Of the wire, which is none of any dataset."""

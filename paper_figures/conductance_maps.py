@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from disorder_landscape.physics.labels import CONDUCTANCES
+from disorder_landscape.model.quantities import CONDUCTANCES
 from plotting import (
     FULL_WIDTH,
     LABELS,

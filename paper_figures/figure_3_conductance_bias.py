@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from command import Request, figure_script
 from conductance_maps import blocks_height, draw_conductance_blocks
 from disorder_landscape import Nanowire, conductance
-from disorder_landscape.physics.labels import CONDUCTANCES
+from disorder_landscape.model.quantities import CONDUCTANCES
 from plotting import FULL_WIDTH
 from wires import drawn_realizations, simulate_rows
 

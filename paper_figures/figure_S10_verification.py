@@ -23,8 +23,8 @@ from disorder_landscape import Nanowire, conductance, verify
 from disorder_landscape.config import Config
 from disorder_landscape.inference.comparison import scores
 from disorder_landscape.inference.verification import control_wires
-from disorder_landscape.physics.disorder import MEAN_STD
-from disorder_landscape.physics.labels import CONDUCTANCES
+from disorder_landscape.model.disorder import MEAN_STD
+from disorder_landscape.model.quantities import CONDUCTANCES
 from plotting import (
     FULL_WIDTH,
     LABELS,

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 
 from command import Request, figure_script
 from disorder_landscape import Nanowire
-from disorder_landscape.physics.parameters import SITES
+from disorder_landscape.model.parameters import SITES
 from plotting import FULL_WIDTH, INPUT, PREDICTION, inches
 from solids import DEPTH, draw_box
 

@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from command import Request, figure_script
-from disorder_landscape.physics.disorder import fidelity_by_components
+from disorder_landscape.model.disorder import fidelity_by_components
 from plotting import FULL_WIDTH, inches, write
 
 SITES = (200, 300, 400)

@@ -18,9 +18,9 @@ from tqdm import tqdm
 
 from command import Request, figure_script
 from disorder_landscape import Nanowire, conductance, topological_visibility
-from disorder_landscape.physics.labels import CONDUCTANCES
-from disorder_landscape.physics.parameters import B_MAX, MU_MAX, SITES, TEMPERATURE
-from disorder_landscape.physics.topology import transition_field
+from disorder_landscape.model.parameters import B_MAX, MU_MAX, SITES, TEMPERATURE
+from disorder_landscape.model.quantities import CONDUCTANCES
+from disorder_landscape.observables.visibility import transition_field
 from plotting import (
     FULL_WIDTH,
     LABELS,

@@ -7,7 +7,7 @@ from hypothesis import settings
 from hypothesis import strategies as st
 
 from disorder_landscape import Nanowire
-from disorder_landscape.physics.disorder import disorder_realization
+from disorder_landscape.model.disorder import disorder_realization
 
 settings.register_profile("default", deadline=None, derandomize=True)
 settings.load_profile("default")

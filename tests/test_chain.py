@@ -11,7 +11,7 @@ import xarray as xr
 from disorder_landscape import ArgumentError, Nanowire, chain, conductance, predict
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.learning.model import load_model_config
-from disorder_landscape.physics.labels import CONDUCTANCES
+from disorder_landscape.model.quantities import CONDUCTANCES
 
 CONFIG = "configs/smoke.toml"
 R2_TO_REACH = 0.87

@@ -31,7 +31,7 @@ from disorder_landscape.cli import app
 from disorder_landscape.config import Config
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.learning.scaling import LabelScaler
-from disorder_landscape.physics.disorder import disorder_realization
+from disorder_landscape.model.disorder import disorder_realization
 from disorder_landscape.studies.table import Result, write_table
 
 ALL = load_claims()

@@ -8,9 +8,10 @@ from scipy.integrate import quad
 from disorder_landscape import ArgumentError, Nanowire, conductance, topological_visibility
 from disorder_landscape.config import load_config
 from disorder_landscape.dataset.realizations import realization
-from disorder_landscape.physics import disorder, hamiltonian, kwant_solver
-from disorder_landscape.physics.parameters import BOLTZMANN
-from disorder_landscape.physics.thermal import thermal_grid
+from disorder_landscape.model import disorder, hamiltonian
+from disorder_landscape.model.parameters import BOLTZMANN
+from disorder_landscape.solver import kwant_reference
+from disorder_landscape.solver.energy_grid import thermal_grid
 
 WIRE = Nanowire(np.zeros(300))
 
@@ -62,7 +63,7 @@ def test_btk_relations():
     """S-I: G_aa = N − R_ee + R_he, G_ab = T_ee − T_he, from the scattering matrix itself."""
     wire = Nanowire(np.random.default_rng(0).normal(0, 0.3, 60))
     arguments = np.array([0.1]), np.array([0.6]), np.array([0.03])
-    S = next(kwant_solver.scattering_matrices(wire, *arguments))[1]
+    S = next(kwant_reference.scattering_matrices(wire, *arguments))[1]
     p = {
         (a, e, b, f): (abs(S.submatrix((a, e), (b, f))) ** 2).sum()
         for a in (0, 1)
@@ -115,7 +116,7 @@ def test_a_lead_without_a_chemical_potential_is_refused():
 def test_topological_visibility_is_the_determinant_of_the_reflection_matrix():
     """S-I: T_IV = det r at ω = 0: real, positive if trivial and negative if topological."""
     arguments = np.array([0.1]), np.array([0.5]), np.zeros(1)
-    r = next(kwant_solver.scattering_matrices(WIRE, *arguments))[1].submatrix(0, 0)
+    r = next(kwant_reference.scattering_matrices(WIRE, *arguments))[1].submatrix(0, 0)
     determinant = np.linalg.det(r)
     assert abs(determinant.imag) < 1e-9
     T = topological_visibility(WIRE, 0.1, [0.0, 0.5]).sel(lead="L", mu=0.1)

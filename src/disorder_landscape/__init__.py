@@ -7,10 +7,10 @@ Nanowires".
 from typing import TYPE_CHECKING, Any
 
 from disorder_landscape.arguments import ArgumentError
-from disorder_landscape.physics.gradient import conductance_gradient
-from disorder_landscape.physics.parameters import Nanowire
-from disorder_landscape.physics.topology import topological_visibility
-from disorder_landscape.physics.transport import conductance
+from disorder_landscape.model.parameters import Nanowire
+from disorder_landscape.observables.conductance import conductance
+from disorder_landscape.observables.gradient import conductance_gradient
+from disorder_landscape.observables.visibility import topological_visibility
 
 if TYPE_CHECKING:
     from disorder_landscape.inference.infer import infer

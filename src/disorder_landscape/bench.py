@@ -14,10 +14,10 @@ from disorder_landscape import stopwatches
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset.store import PACKAGES
 from disorder_landscape.machine import cores, cpu_name
-from disorder_landscape.physics.disorder import disorder_realization
-from disorder_landscape.physics.parameters import ALPHA_RANGE, TEMPERATURE, Nanowire
-from disorder_landscape.physics.thermal import thermal_grid
-from disorder_landscape.physics.transport import exact_average
+from disorder_landscape.model.disorder import disorder_realization
+from disorder_landscape.model.parameters import ALPHA_RANGE, TEMPERATURE, Nanowire
+from disorder_landscape.observables.conductance import exact_average
+from disorder_landscape.solver.energy_grid import thermal_grid
 from disorder_landscape.stopwatches import BIASES, Stopwatch
 
 PAPER_ENERGIES = 151

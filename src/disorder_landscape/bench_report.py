@@ -9,7 +9,7 @@ from typing import Any
 from disorder_landscape.bench import DATASETS, PAPER_ENERGIES, Progress, measure
 from disorder_landscape.bench_plot import plot
 from disorder_landscape.files import check_writable, replacing, write_json
-from disorder_landscape.physics.parameters import SITES, TEMPERATURE
+from disorder_landscape.model.parameters import SITES, TEMPERATURE
 from disorder_landscape.stopwatches import BIASES
 
 

@@ -20,7 +20,7 @@ from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.config import Config, DatasetConfig, load_config
 from disorder_landscape.dataset import shards
 from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
-from disorder_landscape.physics.labels import labelled
+from disorder_landscape.model.quantities import labelled
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 SHIPPED = "shipped"

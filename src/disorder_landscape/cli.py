@@ -96,8 +96,8 @@ def simulate(
     from disorder_landscape import simulation
     from disorder_landscape.dataset.store import write_dataset
     from disorder_landscape.files import check_netcdf, check_writable
-    from disorder_landscape.physics.disorder import disorder_realization
-    from disorder_landscape.physics.parameters import Nanowire
+    from disorder_landscape.model.disorder import disorder_realization
+    from disorder_landscape.model.parameters import Nanowire
 
     check_netcdf("output", output)
     if plot is not None:
@@ -216,7 +216,7 @@ def predict(
     from disorder_landscape.dataset.store import read_dataset, write_dataset
     from disorder_landscape.files import check_netcdf
     from disorder_landscape.learning.prediction import predict as predict_labels
-    from disorder_landscape.physics.labels import CONDUCTANCES
+    from disorder_landscape.model.quantities import CONDUCTANCES
 
     check_netcdf("output", output)
     same = output.resolve() == measurement.resolve()
@@ -334,7 +334,7 @@ def verify(
     from disorder_landscape.inference.report import parse_noise
     from disorder_landscape.inference.verification import verify as compare
     from disorder_landscape.learning.model import load_model_config
-    from disorder_landscape.physics.labels import CONDUCTANCES
+    from disorder_landscape.model.quantities import CONDUCTANCES
     from disorder_landscape.simulation import parse_grid
 
     if output is not None:

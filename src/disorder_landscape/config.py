@@ -12,8 +12,8 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from disorder_landscape.arguments import ArgumentError
-from disorder_landscape.physics import disorder
-from disorder_landscape.physics.parameters import (
+from disorder_landscape.model import disorder
+from disorder_landscape.model.parameters import (
     ALPHA_RANGE,
     B_MAX,
     BIAS,

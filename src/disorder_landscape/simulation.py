@@ -11,10 +11,10 @@ import xarray as xr
 from disorder_landscape.arguments import ArgumentError, numbers_of, require
 from disorder_landscape.dataset.store import read_dataset
 from disorder_landscape.files import replacing
-from disorder_landscape.physics.labels import CONDUCTANCES, labelled
-from disorder_landscape.physics.parameters import FloatArray, Nanowire, checked_potential
-from disorder_landscape.physics.topology import topological_visibility
-from disorder_landscape.physics.transport import Progress, conductance
+from disorder_landscape.model.parameters import FloatArray, Nanowire, checked_potential
+from disorder_landscape.model.quantities import CONDUCTANCES, labelled
+from disorder_landscape.observables.conductance import Progress, conductance
+from disorder_landscape.observables.visibility import topological_visibility
 
 
 def read_potential(path: Path, sites: int) -> FloatArray:

@@ -15,11 +15,10 @@ import numpy as np
 
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset import shards
-from disorder_landscape.physics import kwant_solver
-from disorder_landscape.physics.gradient import conductance_gradient
-from disorder_landscape.physics.parameters import BIAS, TEMPERATURE, FloatArray, Nanowire
-from disorder_landscape.physics.transport import conductance, exact_average
-from disorder_landscape.solver import compiled
+from disorder_landscape.model.parameters import BIAS, TEMPERATURE, FloatArray, Nanowire
+from disorder_landscape.observables.conductance import conductance, exact_average
+from disorder_landscape.observables.gradient import conductance_gradient
+from disorder_landscape.solver import compiled, kwant_reference
 
 ENERGIES = np.linspace(0.001, 0.08, 16)
 """In meV, for the times per energy."""
@@ -38,10 +37,10 @@ def kwant(wire: Nanowire, mu: FloatArray, B: FloatArray) -> Stopwatch:
     """
 
     def watch() -> float:
-        matrices = kwant_solver.scattering_matrices(wire, mu, B[B.size // 2 :], ENERGIES[7:8])
+        matrices = kwant_reference.scattering_matrices(wire, mu, B[B.size // 2 :], ENERGIES[7:8])
         next(matrices)  # builds the system and computes the modes
         rest = islice(matrices, mu.size - 1)
-        return _seconds(lambda: [kwant_solver.conductances(s) for _, s in rest]) / (mu.size - 1)
+        return _seconds(lambda: [kwant_reference.conductances(s) for _, s in rest]) / (mu.size - 1)
 
     return watch
 

@@ -14,7 +14,7 @@ import xarray as xr
 from disorder_landscape import ArgumentError, conductance
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset import realizations, shards, store
-from disorder_landscape.physics.labels import CONDUCTANCES
+from disorder_landscape.model.quantities import CONDUCTANCES
 
 CONFIG = DatasetConfig(realizations=11, sites=30, mu_points=3, B_points=4, shard_size=3, seed=5)
 

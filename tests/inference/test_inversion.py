@@ -29,7 +29,7 @@ from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED, NOT_D
 from disorder_landscape.inference.word import word_on
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.learning.scaling import LabelScaler
-from disorder_landscape.physics.labels import CONDUCTANCES
+from disorder_landscape.model.quantities import CONDUCTANCES
 
 NOISE = 0.001
 DATASET = DatasetConfig(

@@ -28,7 +28,7 @@ from disorder_landscape.inference.verdict import (
     verdict,
 )
 from disorder_landscape.inference.word import Said
-from disorder_landscape.physics.disorder import disorder_realization
+from disorder_landscape.model.disorder import disorder_realization
 from linear_data import CONFIG, SIZE, UNKNOWNS, Linear, posterior
 
 SETTINGS = RoundSettings()

@@ -11,8 +11,8 @@ from disorder_landscape import ArgumentError, Nanowire, conductance
 from disorder_landscape.config import DatasetConfig, WireConfig
 from disorder_landscape.inference.comparison import scores, table
 from disorder_landscape.inference.verification import control_wires
-from disorder_landscape.physics.disorder import cosine_components
-from disorder_landscape.physics.labels import CONDUCTANCES
+from disorder_landscape.model.disorder import cosine_components
+from disorder_landscape.model.quantities import CONDUCTANCES
 
 SITES, COMPONENTS, CONTROLS = 100, 3, 19
 CONFIG = DatasetConfig(realizations=1, sites=SITES, components=COMPONENTS)

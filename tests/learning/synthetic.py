@@ -9,7 +9,7 @@ import xarray as xr
 
 from disorder_landscape.config import Config
 from disorder_landscape.learning.mirror import mirrored_labels
-from disorder_landscape.physics.disorder import potential_from_components
+from disorder_landscape.model.disorder import potential_from_components
 
 
 def tiny_config(realizations: int = 400, width_fraction: float = 0.03, **training: Any) -> Config:

@@ -7,7 +7,7 @@ import numpy as np
 import disorder_landscape as dl
 from disorder_landscape.learning.mirror import mirrored_conductance, mirrored_labels
 from disorder_landscape.learning.scaling import conductance_array
-from disorder_landscape.physics.disorder import potential_from_components
+from disorder_landscape.model.disorder import potential_from_components
 
 
 def test_mirroring_twice_changes_nothing():

@@ -14,7 +14,7 @@ from disorder_landscape.learning.model import TrainedModel, load_model
 from disorder_landscape.learning.networks import build_network
 from disorder_landscape.learning.prediction import predict
 from disorder_landscape.learning.scaling import LabelScaler, conductance_array, label_names
-from disorder_landscape.physics.disorder import potential_from_components
+from disorder_landscape.model.disorder import potential_from_components
 from synthetic import synthetic_dataset, tiny_config
 
 

@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from disorder_landscape import ArgumentError, Nanowire
-from disorder_landscape.physics.parameters import BIAS, BOLTZMANN, TEMPERATURE
+from disorder_landscape.model.parameters import BIAS, BOLTZMANN, TEMPERATURE
 from disorder_landscape.solver import compiled
 
 

@@ -6,8 +6,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.linalg import eigh
 from scipy.optimize import brentq
 
-from disorder_landscape.physics.hamiltonian import wire_hamiltonian
-from disorder_landscape.physics.parameters import BIAS, BOLTZMANN
+from disorder_landscape.model.hamiltonian import wire_hamiltonian
+from disorder_landscape.model.parameters import BIAS, BOLTZMANN
 from disorder_landscape.solver import compiled
 from random_wires import random_wire
 

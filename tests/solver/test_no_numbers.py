@@ -7,7 +7,7 @@ import numpy as np
 from numpy.testing import assert_allclose
 
 from disorder_landscape import Nanowire
-from disorder_landscape.physics.parameters import BIAS, BOLTZMANN, TEMPERATURE
+from disorder_landscape.model.parameters import BIAS, BOLTZMANN, TEMPERATURE
 from disorder_landscape.solver import compiled
 from random_wires import random_wire
 

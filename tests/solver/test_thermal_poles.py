@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 from scipy.integrate import quad
 from scipy.special import polygamma
 
-from disorder_landscape.physics.parameters import BOLTZMANN
+from disorder_landscape.model.parameters import BOLTZMANN
 from disorder_landscape.solver.compiled import core
 
 KT = BOLTZMANN * 0.05

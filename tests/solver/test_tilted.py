@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
-from disorder_landscape.physics import hamiltonian, kwant_solver
-from disorder_landscape.solver import compiled
+from disorder_landscape.model import hamiltonian
+from disorder_landscape.solver import compiled, kwant_reference
 from random_wires import energies, fields, mus, random_wire, seeds
 
 angles = st.one_of(st.floats(-3.2, 3.2), st.sampled_from([0.0, np.pi / 2, np.pi, 1e-7]))
@@ -27,7 +27,7 @@ def test_conductances_are_those_of_kwant(seed, mu, B, omega, theta, barrier):
     wire = replace(random_wire(seed, sites=100), barrier=barrier)
     arguments = [wire], *at(mu, B, omega)
     found = compiled.tilted_conductance(*arguments, theta)
-    expected = kwant_solver.bare_conductance(*arguments, theta)
+    expected = kwant_reference.bare_conductance(*arguments, theta)
     assert_allclose(found, expected, atol=1e-9, rtol=0)
 
 
@@ -37,7 +37,7 @@ def test_determinants_are_those_of_kwant(seed, mu, B, theta, barrier):
     wire = replace(random_wire(seed, sites=100), barrier=barrier)
     arguments = [wire], np.array([mu]), np.array([B]), theta
     found = compiled.tilted_determinant(*arguments)
-    assert_allclose(found, kwant_solver.reflection_determinant(*arguments), atol=1e-9, rtol=0)
+    assert_allclose(found, kwant_reference.reflection_determinant(*arguments), atol=1e-9, rtol=0)
 
 
 @settings(max_examples=30)

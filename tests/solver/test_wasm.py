@@ -13,7 +13,7 @@ from numpy.testing import assert_allclose
 
 from disorder_landscape import Nanowire
 from disorder_landscape.chain import REPOSITORY
-from disorder_landscape.physics.parameters import BIAS, BOLTZMANN, TEMPERATURE
+from disorder_landscape.model.parameters import BIAS, BOLTZMANN, TEMPERATURE
 from disorder_landscape.solver import compiled
 from random_wires import random_wire
 

@@ -24,7 +24,7 @@ from disorder_landscape.inference.inversion import word_heard
 from disorder_landscape.inference.measurement import empty_measurement
 from disorder_landscape.inference.unknowns import Gaussian
 from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED
-from disorder_landscape.physics.parameters import Nanowire
+from disorder_landscape.model.parameters import Nanowire
 from disorder_landscape.studies.components import measured_grid
 from disorder_landscape.studies.inversions import KEYS, Task, measured_wire, model_of, wrong
 from disorder_landscape.studies.rows import complete, missing, read_rows, write_rows

@@ -16,7 +16,7 @@ from scipy.stats import permutation_test, spearmanr
 
 from disorder_landscape.claims.claim import ResultMissingError
 from disorder_landscape.inference.verdict import CONVERGED
-from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.studies.components import THIRTY_COMPONENTS
 from disorder_landscape.studies.crossings import (
     R2_AIMED_AT,

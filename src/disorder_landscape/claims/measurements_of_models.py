@@ -16,9 +16,9 @@ from disorder_landscape.learning.metrics import Scores, score
 from disorder_landscape.learning.model import TrainedModel, load_model, load_model_config
 from disorder_landscape.learning.prediction import predict
 from disorder_landscape.learning.scaling import conductance_array, label_array
-from disorder_landscape.physics.parameters import FloatArray, Nanowire
-from disorder_landscape.physics.topology import topological_visibility
-from disorder_landscape.physics.transport import conductance
+from disorder_landscape.model.parameters import FloatArray, Nanowire
+from disorder_landscape.observables.conductance import conductance
+from disorder_landscape.observables.visibility import topological_visibility
 from disorder_landscape.studies.noise import CHANNELS_WITH_ERRORS, with_errors
 
 VISIBILITY_POINTS = 61, 81

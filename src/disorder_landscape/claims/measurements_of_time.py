@@ -15,15 +15,16 @@ from disorder_landscape import stopwatches
 from disorder_landscape.bench import DATASETS, PAPER_ENERGIES
 from disorder_landscape.claims.measurements_of_models import sets_and_training_hours
 from disorder_landscape.machine import cores
-from disorder_landscape.physics import disorder, kwant_solver
-from disorder_landscape.physics.parameters import (
+from disorder_landscape.model import disorder
+from disorder_landscape.model.parameters import (
     ALPHA_RANGE,
     SITES,
     TEMPERATURE,
     FloatArray,
     Nanowire,
 )
-from disorder_landscape.physics.transport import exact_average
+from disorder_landscape.observables.conductance import exact_average
+from disorder_landscape.solver import kwant_reference
 
 TURNS = 5
 """Turns of a stopwatch, of which the median counts; the first, which warms up, is one more."""
@@ -107,10 +108,10 @@ def _kwant_core_seconds(sites: int) -> stopwatches.Stopwatch:
     wire, (mu, B) = _wire(sites), _grid()
 
     def watch() -> float:
-        solved = kwant_solver.scattering_matrices(wire, mu, B[-1:], stopwatches.ENERGIES[7:8])
+        solved = kwant_reference.scattering_matrices(wire, mu, B[-1:], stopwatches.ENERGIES[7:8])
         next(solved)  # builds the system and computes the modes
         started = time.process_time()
-        done = [kwant_solver.conductances(matrix) for _, matrix in solved]
+        done = [kwant_reference.conductances(matrix) for _, matrix in solved]
         return (time.process_time() - started) / len(done)
 
     return watch

@@ -7,9 +7,9 @@ from functools import cache
 import numpy as np
 
 from disorder_landscape.claims.claim import paper_value
-from disorder_landscape.physics import disorder
-from disorder_landscape.physics.parameters import SITES, FloatArray, Nanowire
-from disorder_landscape.physics.topology import topological_visibility, transition_field
+from disorder_landscape.model import disorder
+from disorder_landscape.model.parameters import SITES, FloatArray, Nanowire
+from disorder_landscape.observables.visibility import topological_visibility, transition_field
 
 LONG = 4000
 """Sites of a wire whose transition is that of an infinite one."""

@@ -9,10 +9,10 @@ import numpy as np
 import xarray as xr
 
 from disorder_landscape.config import DatasetConfig, WireConfig
-from disorder_landscape.physics.disorder import disorder_realization
-from disorder_landscape.physics.labels import CONDUCTANCES, labelled
-from disorder_landscape.physics.parameters import FloatArray, Nanowire
-from disorder_landscape.physics.transport import conductance
+from disorder_landscape.model.disorder import disorder_realization
+from disorder_landscape.model.parameters import FloatArray, Nanowire
+from disorder_landscape.model.quantities import CONDUCTANCES, labelled
+from disorder_landscape.observables.conductance import conductance
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,7 +17,7 @@ import xarray as xr
 from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
-from disorder_landscape.physics.labels import CONDUCTANCES
+from disorder_landscape.model.quantities import CONDUCTANCES
 from disorder_landscape.workers import each_result
 
 VARIABLES = (*CONDUCTANCES, "components", "alpha", "potential")

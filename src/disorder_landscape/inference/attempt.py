@@ -9,7 +9,7 @@ import numpy as np
 from disorder_landscape.inference.observation import Observation, objective, squared_misfits
 from disorder_landscape.inference.population import Population
 from disorder_landscape.inference.unknowns import Gaussian
-from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.model.parameters import FloatArray
 
 TOLERATED = 3.5
 """χ² of all data, or of one channel's, may lie this many of its own deviations above its mean."""

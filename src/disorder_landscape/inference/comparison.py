@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from disorder_landscape.physics.labels import CONDUCTANCES
-from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.model.parameters import FloatArray
+from disorder_landscape.model.quantities import CONDUCTANCES
 
 SIGNIFICANCE = 0.05
 """Largest p-value of a prediction that passes."""

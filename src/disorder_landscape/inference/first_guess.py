@@ -8,7 +8,7 @@ from disorder_landscape.config import DatasetConfig
 from disorder_landscape.inference.observation import Observation
 from disorder_landscape.inference.unknowns import Gaussian, Unknowns
 from disorder_landscape.learning.model import TrainedModel, points_of_grid
-from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.model.parameters import FloatArray
 
 WIRES_PER_UNKNOWN = 4
 """Wires on which the network's error is measured."""

@@ -26,9 +26,9 @@ from disorder_landscape.inference.observation import Observation, noise_of_chann
 from disorder_landscape.inference.unknowns import Unknowns
 from disorder_landscape.inference.verdict import verdict
 from disorder_landscape.learning.model import TrainedModel, load_model, load_model_config
-from disorder_landscape.physics.labels import AXES, CONDUCTANCES, labelled
-from disorder_landscape.physics.parameters import PARAMETER_RANGES, FloatArray
-from disorder_landscape.physics.topology import topological_visibility
+from disorder_landscape.model.parameters import PARAMETER_RANGES, FloatArray
+from disorder_landscape.model.quantities import AXES, CONDUCTANCES, labelled
+from disorder_landscape.observables.visibility import topological_visibility
 
 MEMBERS = 64
 MAP_POINTS = 61, 81

@@ -21,7 +21,7 @@ from disorder_landscape.inference.unknowns import Gaussian
 from disorder_landscape.inference.verdict import NOT_CONVERGED, is_surely_right, verdict
 from disorder_landscape.inference.word import Word, word_on
 from disorder_landscape.learning.model import TrainedModel
-from disorder_landscape.physics.parameters import BOLTZMANN
+from disorder_landscape.model.parameters import BOLTZMANN
 
 STRAIGHT = 0.25
 """An answer whose error bar is more than this many kT, or …"""

@@ -12,10 +12,10 @@ from scipy.constants import e, h
 
 from disorder_landscape.arguments import ArgumentError, grid_in, number_in, require
 from disorder_landscape.config import DatasetConfig
-from disorder_landscape.physics.hamiltonian import FULL_TURN
-from disorder_landscape.physics.labels import AXES, CONDUCTANCES
-from disorder_landscape.physics.parameters import PARAMETER_RANGES, FloatArray, Nanowire
-from disorder_landscape.physics.transport import conductance
+from disorder_landscape.model.hamiltonian import FULL_TURN
+from disorder_landscape.model.parameters import PARAMETER_RANGES, FloatArray, Nanowire
+from disorder_landscape.model.quantities import AXES, CONDUCTANCES
+from disorder_landscape.observables.conductance import conductance
 
 QUANTUM = e**2 / h
 """e²/h in S."""

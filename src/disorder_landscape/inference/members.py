@@ -18,7 +18,7 @@ import numpy as np
 from disorder_landscape.inference.observation import Observation
 from disorder_landscape.inference.unknowns import Gaussian
 from disorder_landscape.inference.word import Said, Word
-from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.model.parameters import FloatArray
 
 LEAST_WEIGHT = 1e-3
 """Members of less weight are not looked at."""

@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 
 from disorder_landscape.inference.comparison import scores
 from disorder_landscape.inference.measurement import Measurement
-from disorder_landscape.physics.disorder import MEAN_STD
-from disorder_landscape.physics.labels import CONDUCTANCES
-from disorder_landscape.physics.parameters import FloatArray, Nanowire
-from disorder_landscape.physics.transport import conductance
+from disorder_landscape.model.disorder import MEAN_STD
+from disorder_landscape.model.parameters import FloatArray, Nanowire
+from disorder_landscape.model.quantities import CONDUCTANCES
+from disorder_landscape.observables.conductance import conductance
 
 SHIFTS = np.linspace(-3 * MEAN_STD, 3 * MEAN_STD, 13)
 """Means of V in meV that are tried; the steps are about kT."""

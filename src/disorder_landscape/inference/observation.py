@@ -13,8 +13,8 @@ from disorder_landscape.arguments import number_in, require
 from disorder_landscape.inference.measurement import Measurement, simulated
 from disorder_landscape.inference.unknowns import Unknowns
 from disorder_landscape.learning.scaling import NOISE_FLOOR
-from disorder_landscape.physics.labels import CONDUCTANCES
-from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.model.parameters import FloatArray
+from disorder_landscape.model.quantities import CONDUCTANCES
 from disorder_landscape.solver import compiled
 
 SOLVER_ERROR = compiled.core.TOLERANCE

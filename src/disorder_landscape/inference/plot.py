@@ -12,8 +12,8 @@ from disorder_landscape.files import replacing
 from disorder_landscape.inference.measurement import Measurement
 from disorder_landscape.inference.report import alpha_with_deviation, error_bar
 from disorder_landscape.inference.verdict import CONVERGED
-from disorder_landscape.physics.labels import CONDUCTANCES
-from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.model.parameters import FloatArray
+from disorder_landscape.model.quantities import CONDUCTANCES
 
 FIGURE_SIZE = 7.06, 7.2
 """In inches; the width is that of a page of the paper's journal."""

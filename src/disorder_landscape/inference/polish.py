@@ -16,7 +16,7 @@ import numpy as np
 
 from disorder_landscape.inference.observation import Observation, objective, overall_misfit
 from disorder_landscape.inference.unknowns import Gaussian, Unknowns
-from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.model.parameters import FloatArray
 
 DIFFERENCE = 0.5
 """Step of the differences in deviations of the posterior, …"""

@@ -24,7 +24,7 @@ from disorder_landscape.inference.members import log_mixture
 from disorder_landscape.inference.observation import Observation, objective, overall_misfit
 from disorder_landscape.inference.rounds import Recall
 from disorder_landscape.inference.unknowns import Gaussian
-from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.model.parameters import FloatArray
 
 AT_A_TIME = 128
 """Members that are drawn before the next proposal is made, at least, …"""

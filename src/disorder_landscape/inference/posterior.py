@@ -14,7 +14,7 @@ import numpy as np
 
 from disorder_landscape.inference.observation import Observation, objective
 from disorder_landscape.inference.unknowns import Gaussian
-from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.model.parameters import FloatArray
 
 WIDER = 1.15
 """Proposals are this much wider than the answer, so that its tails are proposed."""

@@ -7,7 +7,7 @@ from sklearn.covariance import ledoit_wolf
 
 from disorder_landscape.inference.observation import Observation
 from disorder_landscape.inference.word import Said
-from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.model.parameters import FloatArray
 
 RIDGES = np.logspace(-1, 1.5, 6)
 """Strengths of the ridge to choose from, in units of the noise and of what lines leave."""

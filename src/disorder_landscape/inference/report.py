@@ -10,8 +10,8 @@ from disorder_landscape.config import TrainingConfig
 from disorder_landscape.inference.observation import noise_of_channels, one_or_each
 from disorder_landscape.inference.verdict import CONVERGED
 from disorder_landscape.learning.scaling import NOISE_FLOOR
-from disorder_landscape.physics.labels import CONDUCTANCES
-from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.model.parameters import FloatArray
+from disorder_landscape.model.quantities import CONDUCTANCES
 
 UNUSED_TO = 2.0
 """A network guesses badly from errors that are more than so many times those of its training."""

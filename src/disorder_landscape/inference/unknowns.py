@@ -16,8 +16,8 @@ import numpy as np
 from disorder_landscape.arguments import require
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset.realizations import Realization
-from disorder_landscape.physics.disorder import component_covariance, potential_from_components
-from disorder_landscape.physics.parameters import PARAMETER_RANGES, FloatArray, Nanowire
+from disorder_landscape.model.disorder import component_covariance, potential_from_components
+from disorder_landscape.model.parameters import PARAMETER_RANGES, FloatArray, Nanowire
 
 
 @dataclass(frozen=True, eq=False)

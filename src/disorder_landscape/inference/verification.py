@@ -34,9 +34,9 @@ from disorder_landscape.inference.observation import (
     stated_noise,
 )
 from disorder_landscape.inference.posterior import predictive_p
-from disorder_landscape.physics.disorder import disorder_realization
-from disorder_landscape.physics.parameters import FloatArray, Nanowire
-from disorder_landscape.physics.transport import Progress
+from disorder_landscape.model.disorder import disorder_realization
+from disorder_landscape.model.parameters import FloatArray, Nanowire
+from disorder_landscape.observables.conductance import Progress
 
 CONTROLS = 50
 

@@ -17,7 +17,7 @@ import numpy as np
 from disorder_landscape.inference.first_guess import as_seen, network_labels
 from disorder_landscape.inference.observation import Observation
 from disorder_landscape.learning.model import TrainedModel
-from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.model.parameters import FloatArray
 
 
 class Said(NamedTuple):

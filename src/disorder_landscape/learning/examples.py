@@ -11,7 +11,7 @@ from disorder_landscape.arguments import require
 from disorder_landscape.config import TrainingConfig
 from disorder_landscape.learning.mirror import mirrored_conductance, mirrored_labels
 from disorder_landscape.learning.scaling import ConductanceArray, InputScaler, LabelScaler
-from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.model.parameters import FloatArray
 
 
 @dataclass(frozen=True, eq=False)

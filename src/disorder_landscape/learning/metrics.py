@@ -10,8 +10,8 @@ import numpy as np
 from sklearn.metrics import r2_score
 
 from disorder_landscape.learning.scaling import LabelScaler
-from disorder_landscape.physics.disorder import potential_from_components
-from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.model.disorder import potential_from_components
+from disorder_landscape.model.parameters import FloatArray
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from disorder_landscape.learning.scaling import CHANNELS, ConductanceArray
-from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.model.parameters import FloatArray
 
 _SWAPPED = [CHANNELS.index(name.translate(str.maketrans("LR", "RL"))) for name in CHANNELS]
 

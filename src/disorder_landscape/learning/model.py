@@ -28,8 +28,8 @@ from disorder_landscape.learning.scaling import (
     InputScaler,
     LabelScaler,
 )
-from disorder_landscape.physics.labels import AXES
-from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.model.parameters import FloatArray
+from disorder_landscape.model.quantities import AXES
 
 NETWORK, SCALER, CONFIG, METRICS = "network.keras", "scaler.json", "config.json", "metrics.json"
 

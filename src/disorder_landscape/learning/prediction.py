@@ -9,8 +9,8 @@ import xarray as xr
 
 from disorder_landscape.learning.model import TrainedModel, load_model, on_grid_of
 from disorder_landscape.learning.scaling import conductance_array
-from disorder_landscape.physics.disorder import potential_from_components
-from disorder_landscape.physics.labels import labelled
+from disorder_landscape.model.disorder import potential_from_components
+from disorder_landscape.model.quantities import labelled
 
 
 def predict(model: str | Path | TrainedModel, G: xr.Dataset) -> xr.Dataset:

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from sklearn.preprocessing import StandardScaler
 
 from disorder_landscape.arguments import require
-from disorder_landscape.physics.labels import AXES, CONDUCTANCES
-from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.model.parameters import FloatArray
+from disorder_landscape.model.quantities import AXES, CONDUCTANCES
 
 ConductanceArray = NDArray[np.float32]
 

@@ -1,1 +1,1 @@
-"""The compiled core, and what chooses its variant for this CPU."""
+"""How a wire is solved: which route, the compiled core, Kwant, and averages over energy."""

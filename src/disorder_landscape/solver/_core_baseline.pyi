@@ -5,8 +5,8 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import NDArray
 
-from disorder_landscape.physics.hamiltonian import ComplexArray
-from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.model.hamiltonian import ComplexArray
+from disorder_landscape.model.parameters import FloatArray
 
 TOLERANCE: float
 FLOOR: float

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from disorder_landscape.arguments import require
-from disorder_landscape.physics.hamiltonian import ComplexArray
-from disorder_landscape.physics.parameters import BOLTZMANN, FloatArray, Nanowire
+from disorder_landscape.model.hamiltonian import ComplexArray
+from disorder_landscape.model.parameters import BOLTZMANN, FloatArray, Nanowire
 
 if TYPE_CHECKING:
     from types import ModuleType

@@ -13,7 +13,7 @@ import numpy as np
 
 from disorder_landscape.chain import THIRTY, shipped_model
 from disorder_landscape.config import DatasetConfig
-from disorder_landscape.physics.parameters import ALPHA, BIAS
+from disorder_landscape.model.parameters import ALPHA, BIAS
 from disorder_landscape.studies.inversions import inverted, measured_wire, model_of, rounded
 
 POINTS, BIASES = 20, 21

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import linregress
 
-from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.studies.table import Result
 
 R2_AIMED_AT = 0.77

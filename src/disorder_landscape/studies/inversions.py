@@ -27,7 +27,7 @@ from disorder_landscape.inference.observation import Observation, noise_of_chann
 from disorder_landscape.inference.unknowns import Gaussian, Unknowns
 from disorder_landscape.inference.verdict import verdict
 from disorder_landscape.learning.model import TrainedModel, load_model
-from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.studies.rows import complete, study_parser
 
 SEED = 2026

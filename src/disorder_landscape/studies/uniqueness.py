@@ -19,7 +19,7 @@ from disorder_landscape.inference.measurement import empty_measurement
 from disorder_landscape.inference.observation import Observation, noise_of_channels
 from disorder_landscape.inference.polish import linearise
 from disorder_landscape.inference.unknowns import Gaussian, Unknowns
-from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.model.parameters import FloatArray
 
 NOISE = (0.001, 0.01, 0.1)
 """In e²/h; the first is the noise floor of the experiment that the paper cites."""

@@ -16,7 +16,7 @@ from disorder_landscape.inference.measurement import Measurement, empty_measurem
 from disorder_landscape.inference.observation import Observation, noise_of_channels
 from disorder_landscape.inference.posterior import predictive_p
 from disorder_landscape.inference.unknowns import Unknowns
-from disorder_landscape.physics.parameters import FloatArray, Nanowire
+from disorder_landscape.model.parameters import FloatArray, Nanowire
 from disorder_landscape.studies.inversions import SEED, inverted, measured, network_of, rounded
 
 NOTHING = "nothing"

@@ -18,8 +18,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from disorder_landscape.physics.hamiltonian import PARTICLE_HOLE, ComplexArray
-from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.model.hamiltonian import PARTICLE_HOLE, ComplexArray
+from disorder_landscape.model.parameters import FloatArray
 
 DROP = 1e-13
 """Directions of which less than this (squared, relative) is new are left out of the model."""

@@ -7,14 +7,14 @@ from numpy.testing import assert_allclose
 from scipy.optimize import brentq
 
 from disorder_landscape import Nanowire, conductance, topological_visibility
-from disorder_landscape.physics import hamiltonian, kwant_solver
-from disorder_landscape.solver import compiled
+from disorder_landscape.model import hamiltonian
+from disorder_landscape.solver import compiled, kwant_reference
 from random_wires import energies, fields, mus, random_wire, seeds
 
 
 def both(wire, mu, B, omega):
     arguments = [wire], np.array([mu]), np.array([B]), np.array([omega])
-    return compiled.real_conductance(*arguments), kwant_solver.bare_conductance(*arguments)
+    return compiled.real_conductance(*arguments), kwant_reference.bare_conductance(*arguments)
 
 
 @settings(max_examples=150)
@@ -74,7 +74,7 @@ def test_leads_and_wires_of_other_parameters_agree(seed, mu, B, omega):
 @pytest.mark.parametrize("lead_mu", [25.0, 0.2])
 def test_lead_self_energies_are_those_of_kwant(alpha, B, lead_mu):
     wire = Nanowire(np.zeros(2), alpha=alpha, lead_mu=lead_mu)
-    system = kwant_solver.build_system(wire)
+    system = kwant_reference.build_system(wire)
     for omega in (0.0, 0.03):
         sigma = compiled.lead_self_energies(wire, B, np.array([omega]))[0]
         for lead in (0, 1):
@@ -107,7 +107,7 @@ def test_a_level_at_the_energy_switches_to_pivoted_elimination():
     arguments = [wire], np.array([mu]), np.array([B]), np.array([omega])
     trusting = compiled.real_conductance(*arguments, growth_limit=np.inf)
     checked = compiled.real_conductance(*arguments)
-    kwant = kwant_solver.bare_conductance(*arguments)
+    kwant = kwant_reference.bare_conductance(*arguments)
     assert abs(trusting - kwant).max() > 1e-6  # so the check is needed here
     assert_allclose(checked, kwant, atol=1e-9)
 
@@ -171,7 +171,7 @@ def test_majorana_modes_leave_enough_digits_at_zero_energy(name):
     wire, B = MAJORANAS[name]
     arguments = [wire], np.zeros(1), np.array([B])
     omega = np.array([0.0])
-    kwant = kwant_solver.bare_conductance(*arguments, omega)
+    kwant = kwant_reference.bare_conductance(*arguments, omega)
     trusting = compiled.real_conductance(*arguments, omega, growth_limit=np.inf)
     assert abs(trusting - kwant).max() > 1e-11  # so the check is needed here
     for found in (
@@ -182,7 +182,7 @@ def test_majorana_modes_leave_enough_digits_at_zero_energy(name):
         assert_allclose(found, kwant, atol=1e-11)
     assert_allclose(
         compiled.reflection_determinant(*arguments),
-        kwant_solver.reflection_determinant(*arguments),
+        kwant_reference.reflection_determinant(*arguments),
         atol=1e-11,
     )
 

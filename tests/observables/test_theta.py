@@ -13,11 +13,11 @@ from scipy.linalg import block_diag
 from scipy.optimize import brentq
 
 from disorder_landscape import ArgumentError, Nanowire, conductance, topological_visibility
-from disorder_landscape.physics import hamiltonian, kwant_solver, tilted_average
-from disorder_landscape.physics.quadrature import thermal_quadrature
-from disorder_landscape.physics.tilted_levels import BASIS, isolated_wire
-from disorder_landscape.physics.transport import exact_average
-from disorder_landscape.solver import compiled
+from disorder_landscape.model import hamiltonian
+from disorder_landscape.observables.conductance import exact_average
+from disorder_landscape.solver import compiled, kwant_reference, tilted_average
+from disorder_landscape.solver.quadrature import thermal_quadrature
+from disorder_landscape.solver.tilted_levels import BASIS, isolated_wire
 from random_wires import energies, fields, mus, random_wire, seeds
 
 BIAS = np.array([-0.04, -0.02, 0.0, 0.02, 0.04])
@@ -40,7 +40,7 @@ def visibility(wire, mu, B, theta, solver="fast"):
 @example(1, 0.1, 0.0, 0.02, 1.0, (15.0, 15.0))
 def test_both_solvers_agree(seed, mu, B, omega, theta, barrier):
     wire = replace(random_wire(seed), barrier=barrier)
-    kwant = bare(wire, mu, B, omega, theta, kwant_solver.bare_conductance)
+    kwant = bare(wire, mu, B, omega, theta, kwant_reference.bare_conductance)
     assert_allclose(bare(wire, mu, B, omega, theta), kwant, atol=1e-9, rtol=0)
 
 
@@ -65,7 +65,7 @@ def test_lead_self_energies_repeat_themselves_and_are_those_of_kwant(seed, theta
     )
     omega, B = np.array([0.0, 0.03, 0.5]), rng.uniform(-0.8, 0.8)
     sigma = compiled.lead_self_energies(wire, B, omega, theta)
-    leads = kwant_solver.build_system(wire, theta).leads
+    leads = kwant_reference.build_system(wire, theta).leads
     onsite, hop = hamiltonian.lead_onsite(wire, B, theta), hamiltonian.lead_hopping(wire)
     for (k, energy), lead in product(enumerate(omega), (0, 1)):
         ours = np.zeros((4, 4), dtype=complex)
@@ -114,7 +114,7 @@ def test_symmetries(seed, mu, B, omega, theta):
 def test_the_scattering_matrix_is_unitary(seed, mu, B, omega, theta):
     """N − R_ee + R_he, which is what is calculated, is 2 R_he + T_ee + T_he of Kwant's matrix."""
     wire, grids = random_wire(seed), (np.array([mu]), np.array([B]), np.array([omega]))
-    S = next(kwant_solver.scattering_matrices(wire, *grids, theta))[1]
+    S = next(kwant_reference.scattering_matrices(wire, *grids, theta))[1]
     assert_allclose(S.data.conj().T @ S.data, np.eye(len(S.data)), atol=1e-9)
     G = bare(wire, mu, B, omega, theta)[0, 0]
     for lead in (0, 1):
@@ -164,7 +164,7 @@ def test_a_level_of_the_inner_sites_switches_to_pivoting():
     k = np.flatnonzero(np.diff(below))[0]
     level = min(below[k], below[k + 1])
     omega = brentq(lambda omega: levels(omega)[level], grid[k], grid[k + 1], xtol=1e-15)
-    kwant = bare(wire, 0.1, 0.5, omega, theta, kwant_solver.bare_conductance)
+    kwant = bare(wire, 0.1, 0.5, omega, theta, kwant_reference.bare_conductance)
     trusting = bare(wire, 0.1, 0.5, omega, theta, growth_limit=np.inf)
     assert abs(trusting - kwant).max() > 1e-8
     assert_allclose(bare(wire, 0.1, 0.5, omega, theta), kwant, atol=1e-9)
@@ -293,7 +293,7 @@ def test_in_a_tiny_field_leads_without_spin_orbit_keep_their_digits(B):
     wire = Nanowire(np.zeros(300), lead_alpha=0.0)
     found = bare(wire, 0.05, B, 0.03, 0.3)
     assert_allclose(
-        found, bare(wire, 0.05, B, 0.03, 0.3, solve=kwant_solver.bare_conductance), atol=1e-8
+        found, bare(wire, 0.05, B, 0.03, 0.3, solve=kwant_reference.bare_conductance), atol=1e-8
     )
     arguments = [wire], np.array([0.05]), np.array([B]), BIAS, 0.05
     G, error, _ = exact_average(*arguments, theta=0.3)
@@ -326,7 +326,7 @@ def test_leads_at_the_crossing_of_their_spins(B, g):
     wire = Nanowire(np.random.default_rng(4).normal(0, 0.5, 30), lead_mu=0.0, lead_g=g, gamma=0.7)
     for theta in (-1.4, 2.5):
         found = bare(wire, 0.2, B, 0.0, theta)
-        expected = bare(wire, 0.2, B, 0.0, theta, solve=kwant_solver.bare_conductance)
+        expected = bare(wire, 0.2, B, 0.0, theta, solve=kwant_reference.bare_conductance)
         assert_allclose(found, expected, atol=1e-7)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.fft import dct, idct
 
 from disorder_landscape.arguments import require
-from disorder_landscape.physics.parameters import FloatArray
+from disorder_landscape.model.parameters import FloatArray
 
 NOISE_STD = 1.5
 """Standard deviation of the white noise per site in meV (S-II.1)."""

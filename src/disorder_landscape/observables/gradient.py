@@ -12,11 +12,11 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from disorder_landscape.arguments import grid_in, require
-from disorder_landscape.physics.labels import CONDUCTANCES, LABELS, labelled
-from disorder_landscape.physics.lead_slopes import rotated_lead_slopes
-from disorder_landscape.physics.parameters import Nanowire
+from disorder_landscape.model.parameters import Nanowire
+from disorder_landscape.model.quantities import CONDUCTANCES, LABELS, labelled
 from disorder_landscape.solver import compiled
 from disorder_landscape.solver.compiled import GROWTH_LIMIT
+from disorder_landscape.solver.lead_slopes import rotated_lead_slopes
 
 PARAMETERS = {"V": "meV", "mu": "meV", "B": "T", "alpha": "meV nm"}
 """What is varied, and its unit."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from disorder_landscape.physics.hamiltonian import PAULI, ComplexArray
-from disorder_landscape.physics.parameters import FloatArray, Nanowire
+from disorder_landscape.model.hamiltonian import PAULI, ComplexArray
+from disorder_landscape.model.parameters import FloatArray, Nanowire
 from disorder_landscape.solver.compiled import in_rotated_frame, lead_self_energies
 
 

@@ -11,8 +11,8 @@ from numpy.testing import assert_allclose
 from test_agreement import level_of_the_inner_sites
 
 from disorder_landscape import ArgumentError, Nanowire, conductance
-from disorder_landscape.physics.gradient import conductance_gradient
-from disorder_landscape.physics.labels import CONDUCTANCES
+from disorder_landscape.model.quantities import CONDUCTANCES
+from disorder_landscape.observables.gradient import conductance_gradient
 from random_wires import fields, mus, random_wire, seeds
 
 PARAMETERS = ("V", "mu", "B", "alpha")

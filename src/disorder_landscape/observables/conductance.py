@@ -11,14 +11,13 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from disorder_landscape.arguments import grid_in, number_in
-from disorder_landscape.physics import tilted_average
-from disorder_landscape.physics.hamiltonian import FULL_TURN
-from disorder_landscape.physics.labels import CONDUCTANCES, labelled
-from disorder_landscape.physics.parameters import BOLTZMANN, TEMPERATURE, FloatArray, Nanowire
-from disorder_landscape.physics.quadrature import thermal_quadrature
-from disorder_landscape.physics.solvers import solver_functions, wires_of
-from disorder_landscape.physics.thermal import ENERGY_SPACING, thermal_grid
-from disorder_landscape.solver import compiled
+from disorder_landscape.model.hamiltonian import FULL_TURN
+from disorder_landscape.model.parameters import BOLTZMANN, TEMPERATURE, FloatArray, Nanowire
+from disorder_landscape.model.quantities import CONDUCTANCES, labelled
+from disorder_landscape.solver import compiled, tilted_average
+from disorder_landscape.solver.energy_grid import ENERGY_SPACING, thermal_grid
+from disorder_landscape.solver.quadrature import thermal_quadrature
+from disorder_landscape.solver.routes import solver_functions, wires_of
 
 BLOCK_ENERGIES = {"fast": 2**18, "kwant": 2**8, "tilted": 2**14}
 """Energies that each solver is given at a time: about 16 MB and one second."""

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from disorder_landscape.arguments import require
-from disorder_landscape.physics.parameters import BOLTZMANN, FloatArray, Nanowire
+from disorder_landscape.model.parameters import BOLTZMANN, FloatArray, Nanowire
 from disorder_landscape.solver import compiled
 
 TOLERANCE = 5e-8

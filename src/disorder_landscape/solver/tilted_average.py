@@ -22,11 +22,11 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import ThreadpoolController
 
-from disorder_landscape.physics.hamiltonian import ComplexArray
-from disorder_landscape.physics.parameters import BOLTZMANN, FloatArray, Nanowire
-from disorder_landscape.physics.tilted_levels import BASIS, isolated_wire
+from disorder_landscape.model.hamiltonian import ComplexArray
+from disorder_landscape.model.parameters import BOLTZMANN, FloatArray, Nanowire
 from disorder_landscape.solver import compiled
 from disorder_landscape.solver.compiled import core
+from disorder_landscape.solver.tilted_levels import BASIS, isolated_wire
 
 NODES = (10, 16, 24)
 """Numbers of energies for the levels that are tried in turn."""

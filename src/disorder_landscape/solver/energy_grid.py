@@ -11,7 +11,7 @@ import numpy as np
 from scipy.special import expit
 
 from disorder_landscape.arguments import require
-from disorder_landscape.physics.parameters import BOLTZMANN, FloatArray
+from disorder_landscape.model.parameters import BOLTZMANN, FloatArray
 
 ENERGY_SPACING = 0.5e-3
 """Default h in meV."""

@@ -18,7 +18,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from disorder_landscape.physics.parameters import FloatArray, Nanowire
+from disorder_landscape.model.parameters import FloatArray, Nanowire
 
 ComplexArray = NDArray[np.complex128]
 

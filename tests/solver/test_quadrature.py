@@ -7,10 +7,9 @@ from scipy.special import expit
 
 from disorder_landscape import Nanowire, conductance
 from disorder_landscape.arguments import ArgumentError
-from disorder_landscape.physics import quadrature
-from disorder_landscape.physics.parameters import BOLTZMANN
-from disorder_landscape.physics.quadrature import thermal_quadrature
-from disorder_landscape.solver import compiled
+from disorder_landscape.model.parameters import BOLTZMANN
+from disorder_landscape.solver import compiled, quadrature
+from disorder_landscape.solver.quadrature import thermal_quadrature
 from random_wires import random_wire
 
 BIAS = np.array([-0.05, -0.02, 0.0, 0.02, 0.05])

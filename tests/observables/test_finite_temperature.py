@@ -8,11 +8,11 @@ import disorder_landscape as dl
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset.realizations import realization
-from disorder_landscape.physics.disorder import disorder_realization, potential_from_components
-from disorder_landscape.physics.parameters import BIAS
-from disorder_landscape.physics.quadrature import thermal_quadrature
-from disorder_landscape.physics.transport import exact_average
+from disorder_landscape.model.disorder import disorder_realization, potential_from_components
+from disorder_landscape.model.parameters import BIAS
+from disorder_landscape.observables.conductance import exact_average
 from disorder_landscape.solver import compiled
+from disorder_landscape.solver.quadrature import thermal_quadrature
 from random_wires import random_wire
 
 

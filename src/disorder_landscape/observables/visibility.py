@@ -10,10 +10,10 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from disorder_landscape.arguments import grid_in, number_in, require
-from disorder_landscape.physics.hamiltonian import FULL_TURN
-from disorder_landscape.physics.labels import labelled
-from disorder_landscape.physics.parameters import FloatArray, Nanowire
-from disorder_landscape.physics.solvers import solver_functions, wires_of
+from disorder_landscape.model.hamiltonian import FULL_TURN
+from disorder_landscape.model.parameters import FloatArray, Nanowire
+from disorder_landscape.model.quantities import labelled
+from disorder_landscape.solver.routes import solver_functions, wires_of
 
 
 def topological_visibility(

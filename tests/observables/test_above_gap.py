@@ -7,9 +7,8 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from disorder_landscape import Nanowire
-from disorder_landscape.physics import hamiltonian as h
-from disorder_landscape.physics import kwant_solver
-from disorder_landscape.solver import compiled
+from disorder_landscape.model import hamiltonian as h
+from disorder_landscape.solver import compiled, kwant_reference
 from random_wires import fields, mus, random_wire, seeds
 
 hot_energies = st.floats(0.1200001, 0.6)
@@ -84,9 +83,9 @@ def test_particle_hole_symmetry_holds_on_the_retarded_branch(seed, mu, B, omega)
 def test_kwant_gives_the_same(seed, mu, B, omega):
     wire = random_wire(seed)
     params = {"B": B, "uniform": uniform_onsite(wire, mu, B, omega)}
-    system = kwant_solver.build_system(wire)
-    smatrix = kwant_solver.kwant.smatrix(system, omega, params=params, check_hermiticity=False)
-    assert_allclose(solve(wire, mu, B, omega)[0], kwant_solver.conductances(smatrix), atol=1e-9)
+    system = kwant_reference.build_system(wire)
+    smatrix = kwant_reference.kwant.smatrix(system, omega, params=params, check_hermiticity=False)
+    assert_allclose(solve(wire, mu, B, omega)[0], kwant_reference.conductances(smatrix), atol=1e-9)
 
 
 @settings(max_examples=30)

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from disorder_landscape.physics import hamiltonian as h
-from disorder_landscape.physics.hamiltonian import ComplexArray
-from disorder_landscape.physics.parameters import FloatArray, Nanowire
+from disorder_landscape.model import hamiltonian as h
+from disorder_landscape.model.hamiltonian import ComplexArray
+from disorder_landscape.model.parameters import FloatArray, Nanowire
 
 with warnings.catch_warnings():  # without MUMPS Kwant warns; for a chain SciPy's solver is as good
     warnings.simplefilter("ignore", RuntimeWarning)

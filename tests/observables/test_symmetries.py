@@ -6,9 +6,10 @@ from hypothesis import given, settings
 from numpy.testing import assert_allclose
 
 from disorder_landscape import Nanowire, conductance, topological_visibility
-from disorder_landscape.physics import hamiltonian, kwant_solver
-from disorder_landscape.physics.parameters import BIAS
-from disorder_landscape.physics.topology import transition_field
+from disorder_landscape.model import hamiltonian
+from disorder_landscape.model.parameters import BIAS
+from disorder_landscape.observables.visibility import transition_field
+from disorder_landscape.solver import kwant_reference
 from random_wires import energies, fields, mus, random_wire, seeds
 
 KNOWN = [  # μ, B, ω, G_LL, G_RL, det r of the pristine wire at α = 8, from PHYSICS.md
@@ -35,7 +36,7 @@ def test_known_values_of_the_pristine_wire(solver, mu, B, omega, G_LL, G_RL, det
 @settings(max_examples=15)
 @given(seeds, mus, fields, energies)
 def test_the_scattering_matrix_is_unitary(seed, mu, B, omega):
-    matrices = kwant_solver.scattering_matrices(
+    matrices = kwant_reference.scattering_matrices(
         random_wire(seed), np.array([mu]), np.array([B]), np.array([omega])
     )
     S = next(matrices)[1].data
@@ -48,7 +49,7 @@ def test_negative_energies_follow_from_holes_at_positive_ones(seed, mu, B, omega
     """Particle–hole symmetry, checked against a calculation at −ω."""
     wire = random_wire(seed)
     G = {
-        sign: kwant_solver.bare_conductance(
+        sign: kwant_reference.bare_conductance(
             [wire], np.array([mu]), np.array([B]), np.array([sign * omega])
         )[0, 0, 0, 0]
         for sign in (1, -1)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 
 from disorder_landscape.arguments import ArgumentError, require
-from disorder_landscape.physics.parameters import FloatArray, Nanowire
+from disorder_landscape.model.parameters import FloatArray, Nanowire
 from disorder_landscape.solver import compiled
 
 BareConductance = Callable[[Sequence[Nanowire], FloatArray, FloatArray, FloatArray], FloatArray]
@@ -30,11 +30,11 @@ def solver_functions(
         bare = compiled.complex_conductance if dissipative else compiled.real_conductance
         return bare, compiled.reflection_determinant
     if name == "kwant":
-        from disorder_landscape.physics import kwant_solver
+        from disorder_landscape.solver import kwant_reference
 
         return (
-            partial(kwant_solver.bare_conductance, theta=theta),
-            partial(kwant_solver.reflection_determinant, theta=theta),
+            partial(kwant_reference.bare_conductance, theta=theta),
+            partial(kwant_reference.reflection_determinant, theta=theta),
         )
     raise ArgumentError("solver", "be 'fast' or 'kwant'", f"it is {name!r}")
 

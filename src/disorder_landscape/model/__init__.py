@@ -1,0 +1,1 @@
+"""What a wire is: parameters, Hamiltonian, disorder, and the names and units of what varies."""

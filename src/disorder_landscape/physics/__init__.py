@@ -1,1 +1,0 @@
-"""The physics of one wire: Hamiltonian, leads, solvers, temperature, topology."""
