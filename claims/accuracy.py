@@ -34,9 +34,9 @@ from disorder_landscape.dataset.store import provenance
 from disorder_landscape.files import check_writable, replacing, write_json
 from disorder_landscape.model.disorder import disorder_realization
 from disorder_landscape.model.parameters import B_MAX, BOLTZMANN, MU_MAX, SITES, FloatArray
-from disorder_landscape.observables.conductance import exact_average
 from disorder_landscape.solver.compiled import core
 from disorder_landscape.solver.quadrature import REACH, thermal_quadrature
+from disorder_landscape.solver.routes import thermal_average
 
 SEED = 20
 KINDS = ("pristine", "5 weak", "5 strong", "10 weak", "10 strong", "30 weak", "30 strong", "noise")
@@ -105,7 +105,7 @@ def measure(case: Case, finer: bool) -> dict[str, Any]:
         difference from the finer one, and finest, that one's estimate, else NaN.
     """
     _, wire, mu, B, bias, temperature = case
-    G, estimate, energies = exact_average([wire], mu, B, bias, temperature)
+    G, estimate, energies = thermal_average([wire], mu, B, bias, temperature)
     below = BELOW_GAP * (wire.delta0 - abs(bias).max()) / (BOLTZMANN * temperature)
     brute = thermal_quadrature([wire], mu, B, bias, temperature, reach=min(REACH, below), **BRUTE)
     converged = finest = np.nan

@@ -26,9 +26,9 @@ from tqdm import tqdm
 from disorder_landscape import Nanowire
 from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.model.parameters import BOLTZMANN, PARAMETER_RANGES, FloatArray
-from disorder_landscape.observables.conductance import BELOW_GAP
-from disorder_landscape.solver import compiled, kwant_reference, tilted_average
+from disorder_landscape.solver import compiled, kwant_reference
 from disorder_landscape.solver.quadrature import thermal_quadrature
+from disorder_landscape.solver.routes import BELOW_GAP, closed_form
 
 CLOSE = 1e-6
 """Difference from Kwant in e²/h that is allowed."""
@@ -102,8 +102,6 @@ def compare_with_kwant(seed: int, index: int) -> dict[str, Any]:
     above = rng.random() < 0.2
     share = 1 + _scale(rng, 1e-3, 2) if above else rng.choice([0.0, 1e-9, rng.uniform(0, 1)])
     omega = np.array([share * wire.delta0])
-    lossy = above or wire.dissipation > 0
-    solve = compiled.complex_conductance if lossy else compiled.real_conductance
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of Kwant, on its eigenvectors
         try:
@@ -114,10 +112,7 @@ def compare_with_kwant(seed: int, index: int) -> dict[str, Any]:
             )
         except Exception as error:  # LAPACK, or modes that Kwant cannot tell apart
             return {"index": index, "failed": f"{type(error).__name__}: {error}"}
-    if theta == 0:
-        found = solve([wire], mu, B, omega)
-    else:
-        found = compiled.tilted_conductance([wire], mu, B, omega, theta)
+    found = compiled.bare_conductance([wire], mu, B, omega, theta)
     return {
         "index": index,
         "error": _largest(found - exact),
@@ -154,10 +149,7 @@ def compare_with_quadrature(seed: int, index: int) -> dict[str, Any]:
     """Return the largest error of the average in closed form and its estimate; NaN if rejected."""
     (wire, mu, B, theta), bias, temperature = warm_case(seed, index)
     arguments = [wire], mu, B, bias, temperature
-    if theta == 0:
-        G, estimate, _ = compiled.thermal_conductance(*arguments)
-    else:
-        G, estimate, _ = tilted_average.thermal_conductance(*arguments, theta)
+    G, estimate, _ = closed_form(*arguments, theta)
     if not estimate.item() <= compiled.core.TOLERANCE:
         return {"index": index, "error": None}
     exact = thermal_quadrature(*arguments, theta=theta)

@@ -11,6 +11,7 @@
 #include <exception>
 #include <mutex>
 
+#include "bare.hpp"
 #include "binding.hpp"
 #include "derivatives/gradient.hpp"
 #include "isolated.hpp"
@@ -76,21 +77,15 @@ ArrayOf<N> on_grid(const Matrix& V, const Matrix& parameters, const Vector& mu, 
     return out;
 }
 
-// Each arithmetic takes its own energies of the grid.
-template <class... Arithmetic>
-Array conductance_at(Matrix V, Matrix parameters, Vector mu, Vector B, Vector omega, double theta, double growth_limit) {
+Array conductance(Matrix V, Matrix parameters, Vector mu, Vector B, Vector omega, double theta, double growth_limit) {
     return on_grid(V, parameters, mu, B, omega, theta, {V.shape(0), mu.size(), B.size(), omega.size(), 2, 4},
-                   [&](const Grid& grid, double* out, Stop& stop) {
-                       (bare_conductance<Arithmetic>(grid, growth_limit, out, stop), ...);
-                   });
+                   [&](const Grid& grid, double* out, Stop& stop) { bare_conductance(grid, growth_limit, out, stop); });
 }
 
-template <class... Arithmetic>
-Array determinant_at(Matrix V, Matrix parameters, Vector mu, Vector B, Vector omega, double theta, double growth_limit) {
-    return on_grid(V, parameters, mu, B, omega, theta, {V.shape(0), 2, mu.size(), B.size()},
-                   [&](const Grid& grid, double* out, Stop& stop) {
-                       (reflection_determinants<Arithmetic>(grid, growth_limit, out, stop), ...);
-                   });
+Array reflection(Matrix V, Matrix parameters, Vector mu, Vector B, double theta, double growth_limit) {
+    const double zero = 0.0;
+    return on_grid(V, parameters, mu, B, Vector(&zero, {1}), theta, {V.shape(0), 2, mu.size(), B.size()},
+                   [&](const Grid& grid, double* out, Stop& stop) { reflection_determinants(grid, growth_limit, out, stop); });
 }
 
 nb::tuple thermal(Matrix V, Matrix parameters, Vector mu, Vector B, Vector bias, double kT, double tolerance, double growth_limit) {
@@ -116,15 +111,6 @@ std::pair<Array, Array> conductance_gradient(Matrix V, Matrix parameters, Vector
     Array others = new_array({4, 3, mu.size(), B.size(), bias_count});
     run([&](Stop& stop) { gradient(grid, growth_limit, by_V.data(), others.data(), stop); });
     return {by_V, others};
-}
-
-template <class Arithmetic>
-Array conductance(Matrix V, Matrix parameters, Vector mu, Vector B, Vector omega, double growth_limit) {
-    return conductance_at<Arithmetic>(V, parameters, mu, B, omega, 0.0, growth_limit);
-}
-
-Array determinant_at_zero(Matrix V, Matrix parameters, Vector mu, Vector B, Vector omega, double growth_limit) {
-    return determinant_at<RealArithmetic>(V, parameters, mu, B, omega, 0.0, growth_limit);
 }
 
 ComplexArray ends_of_isolated(Matrix V, Matrix parameters, Vector mu, Vector B, Vector x, Vector y, double theta) {
@@ -186,22 +172,16 @@ NB_MODULE(CORE_MODULE, m) {
     m.def("instruction_set", [] { return CORE_TEXT(CORE_VARIANT); });
     m.def("supported_variants", &core::supported_variants);
     m.def("set_threads", [](int count) { return core::thread_count().exchange(std::max(1, count)); }, nb::arg("count"));
-    m.def("real_conductance", &conductance<core::RealArithmetic>, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"),
-          nb::arg("B"), nb::arg("omega"), nb::arg("growth_limit"));
-    m.def("complex_conductance", &conductance<core::ComplexArithmetic>, nb::arg("V"), nb::arg("parameters"),
-          nb::arg("mu"), nb::arg("B"), nb::arg("omega"), nb::arg("growth_limit"));
+    m.def("conductance", &conductance, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"), nb::arg("B"), nb::arg("omega"),
+          nb::arg("theta"), nb::arg("growth_limit"));
+    m.def("reflection_determinant", &reflection, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"), nb::arg("B"),
+          nb::arg("theta"), nb::arg("growth_limit"));
     m.def("thermal_conductance", &thermal, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"), nb::arg("B"),
           nb::arg("bias"), nb::arg("kT"), nb::arg("tolerance"), nb::arg("growth_limit"));
-    m.def("reflection_determinant", &determinant_at_zero, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"),
-          nb::arg("B"), nb::arg("omega"), nb::arg("growth_limit"));
     m.def("conductance_gradient", &conductance_gradient, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"), nb::arg("B"),
           nb::arg("omega"), nb::arg("biases"), nb::arg("bias_count"), nb::arg("slopes"), nb::arg("spin_orbit_slope"),
           nb::arg("growth_limit"));
-    m.def("tilted_conductance", &conductance_at<core::HermitianArithmetic, core::TiltedArithmetic>, nb::arg("V"), nb::arg("parameters"),
-          nb::arg("mu"), nb::arg("B"), nb::arg("omega"), nb::arg("theta"), nb::arg("growth_limit"));
-    m.def("tilted_determinant", &determinant_at<core::HermitianArithmetic, core::TiltedArithmetic>, nb::arg("V"), nb::arg("parameters"),
-          nb::arg("mu"), nb::arg("B"), nb::arg("omega"), nb::arg("theta"), nb::arg("growth_limit"));
-    m.def("tilted_isolated_ends", &ends_of_isolated, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"),
+    m.def("isolated_ends", &ends_of_isolated, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"),
           nb::arg("B"), nb::arg("x"), nb::arg("y"), nb::arg("theta"));
     m.def("lead_self_energies", &lead_self_energies, nb::arg("V"), nb::arg("parameters"), nb::arg("B"), nb::arg("omega"),
           nb::arg("theta"));

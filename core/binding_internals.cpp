@@ -9,6 +9,7 @@
 
 #include "binding.hpp"
 #include "thermal/conductance.hpp"
+#include "tilted.hpp"
 
 namespace core {
 
@@ -42,6 +43,23 @@ std::vector<Levelled> levels_of(const std::vector<double>& omega, const std::vec
     wire_levels(omega.data(), int(omega.size()), data, levels.data());
     std::vector<Levelled> out;
     for (const LevelList& list : levels) out.push_back(as_arrays(list));
+    return out;
+}
+
+// In complex numbers at all energies.
+struct Everywhere : ComplexArithmetic {
+    static bool takes(const Wire&, double) { return true; }
+};
+
+// Conductances in some arithmetics, each at its own energies, whatever the angle.
+template <class... Arithmetic>
+Array conductance_in(Matrix V, Matrix parameters, Vector mu, Vector B, Vector omega, double theta, double growth_limit) {
+    std::vector<Wire> wires = wires_of(V, parameters);
+    Grid grid{wires.data(),   int(wires.size()), mu.data(),         B.data(), omega.data(),
+              int(mu.size()), int(B.size()),     int(omega.size()), theta};
+    Array out = new_array({wires.size(), mu.size(), B.size(), omega.size(), 2, 4});
+    Stop never;
+    (bare_conductance<Arithmetic>(grid, growth_limit, out.data(), never), ...);
     return out;
 }
 
@@ -190,6 +208,8 @@ void bind_internals(nb::module_& m) {
     m.attr("COLUMNS") = COLUMNS;
     m.attr("MIXING") = MIXING;
     m.attr("ELSEWHERE") = std::vector<double>(std::begin(ELSEWHERE), std::end(ELSEWHERE));
+    m.def("complex_conductance", &conductance_in<Everywhere>);
+    m.def("tilted_conductance", &conductance_in<HermitianArithmetic, TiltedArithmetic>);
     m.def("lanes", &lanes);
     m.def("tridiagonalise", &tridiagonalise_sets);
     m.def("diagonalise", &diagonalise_sets);

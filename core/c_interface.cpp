@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "bare.hpp"
 #include "thermal/conductance.hpp"
 
 #if defined(__wasm__)
@@ -16,16 +17,6 @@ namespace {
 using namespace core;
 
 static_assert(PARAMETERS == NANOWIRE_PARAMETERS);
-
-// Below the gap of wires without dissipation, and anywhere else.
-struct BelowGap : RealArithmetic {
-    static bool takes(const Wire& w, double omega) {
-        return w.dissipation == 0 && std::abs(omega) < w.delta0;
-    }
-};
-struct Elsewhere : ComplexArithmetic {
-    static bool takes(const Wire& w, double omega) { return !BelowGap::takes(w, omega); }
-};
 
 bool all_finite(const double* x, size_t count) {
     return std::all_of(x, x + count, [](double value) { return std::isfinite(value); });
@@ -88,8 +79,7 @@ int nanowire_conductance(int wires, int sites, const double* V, const double* pa
     Request of(wires, sites, V, parameters, mu_count, mu, B_count, B, omega_count, omega);
     if (of.status != NANOWIRE_DONE) return of.status;
     Stop never;
-    bare_conductance<BelowGap>(of.grid, GROWTH_LIMIT, G, never);
-    bare_conductance<Elsewhere>(of.grid, GROWTH_LIMIT, G, never);
+    bare_conductance(of.grid, GROWTH_LIMIT, G, never);
     return status_of(all_finite(G, of.points() * omega_count * 8));
 }
 
@@ -117,6 +107,6 @@ int nanowire_reflection_determinant(int wires, int sites, const double* V, const
     if (of.status != NANOWIRE_DONE) return of.status;
     if (!of.without_dissipation()) return NANOWIRE_BAD_WIRE;
     Stop never;
-    reflection_determinants<RealArithmetic>(of.grid, GROWTH_LIMIT, det_r, never);
+    reflection_determinants(of.grid, GROWTH_LIMIT, det_r, never);
     return status_of(all_finite(det_r, of.points() * 2));
 }

@@ -57,7 +57,7 @@ struct RealArithmetic {
     using Block = Symmetric4<N>;
     using Leads = LaneLeads<R>;
     static constexpr int LANES = REAL_LANES;
-    static bool takes(const Wire&, double) { return true; }
+    static bool takes(const Wire& w, double omega) { return w.dissipation == 0 && std::abs(omega) < w.delta0; }
     static LeadSelfEnergy leads(const Wire& w, double B, double omega, double) { return self_energy_of_leads(w, B, omega); }
     static void set(Terms<N>& t, int lane, const Pairing& p, double hop) {
         t.normal.set(lane, p.normal / hop);
@@ -76,7 +76,7 @@ struct ComplexArithmetic {
     using Block = Symmetric4<N>;
     using Leads = LaneLeads<R>;
     static constexpr int LANES = COMPLEX_LANES;
-    static bool takes(const Wire&, double) { return true; }
+    static bool takes(const Wire& w, double omega) { return !RealArithmetic::takes(w, omega); }
     static LeadSelfEnergy leads(const Wire& w, double B, double omega, double) { return self_energy_of_leads(w, B, omega); }
     static void set(Terms<N>& t, int lane, const Pairing& p, double hop) {
         t.normal.re.set(lane, p.normal.re / hop), t.normal.im.set(lane, p.normal.im / hop);
@@ -140,6 +140,8 @@ template <class A, class Use>
 inline void for_all_pairs(const Grid& grid, double growth_limit, Stop& stop, Use use) {
     in_parallel(grid.wire_count * grid.B_count, stop, [&](int task) {
         int w = task / grid.B_count, f = task % grid.B_count;
+        auto takes = [&](double omega) { return A::takes(grid.wires[w], omega); };
+        if (std::none_of(grid.omega, grid.omega + grid.omega_count, takes)) return;
         FieldOf<A> field(grid.wires[w], grid.B[f], grid);
         int pairs = grid.mu_count * field.energy_count();
         for (int first = 0; first < pairs && !stop.asked(); first += A::LANES)

@@ -13,7 +13,6 @@ namespace core {
 struct TiltedArithmetic : ComplexArithmetic {
     using Block = Block4<N>;
     using Leads = TiltedLaneLeads<R>;
-    static bool takes(const Wire& w, double omega) { return w.dissipation != 0 || std::abs(omega) > w.delta0; }
     static LeadSelfEnergy leads(const Wire& w, double B, double omega, double theta) {
         return tilted_self_energy_of_leads(w, B, omega, theta);
     }
@@ -22,7 +21,7 @@ struct TiltedArithmetic : ComplexArithmetic {
 // At the other energies.
 struct HermitianArithmetic : TiltedArithmetic {
     using Block = Hermitian4<N>;
-    static bool takes(const Wire& w, double omega) { return !TiltedArithmetic::takes(w, omega); }
+    static bool takes(const Wire& w, double omega) { return RealArithmetic::takes(w, omega); }
     template <class Ends, class Leads>
     static Conductances<R> conductances(const Ends& G, const Leads& leads) { return lossless_conductances_of_ends<R>(G, leads); }
 };

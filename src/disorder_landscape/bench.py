@@ -16,8 +16,8 @@ from disorder_landscape.dataset.store import PACKAGES
 from disorder_landscape.machine import cores, cpu_name
 from disorder_landscape.model.disorder import disorder_realization
 from disorder_landscape.model.parameters import ALPHA_RANGE, TEMPERATURE, Nanowire
-from disorder_landscape.observables.conductance import exact_average
 from disorder_landscape.solver.energy_grid import thermal_grid
+from disorder_landscape.solver.routes import thermal_average
 from disorder_landscape.stopwatches import BIASES, Stopwatch
 
 PAPER_ENERGIES = 151
@@ -79,10 +79,12 @@ def measure(repeats: int, told: Progress = lambda done: None) -> dict[str, Any]:
     }
     with threadpool_limits(1), stopwatches.threads_at_work(1):
         averaged = {
-            name: exact_average(wires[name], *grids[name], BIASES, TEMPERATURE)[1:]
+            name: thermal_average(wires[name], *grids[name], BIASES, TEMPERATURE)[1:]
             for name in DATASETS
         }
-        needed = {n: exact_average(some, *few, BIASES, TEMPERATURE)[2] for n, some in long.items()}
+        needed = {
+            n: thermal_average(some, *few, BIASES, TEMPERATURE)[2] for n, some in long.items()
+        }
         seconds = _in_turn(watches, repeats, told)
     omega, _ = thermal_grid(BIASES, TEMPERATURE, five[0].delta0, PAPER_SPACING)
     times = {name: float(np.median(of)) for name, of in seconds.items()}

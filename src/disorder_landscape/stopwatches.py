@@ -16,9 +16,10 @@ import numpy as np
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset import shards
 from disorder_landscape.model.parameters import BIAS, TEMPERATURE, FloatArray, Nanowire
-from disorder_landscape.observables.conductance import conductance, exact_average
+from disorder_landscape.observables.conductance import conductance
 from disorder_landscape.observables.gradient import conductance_gradient
 from disorder_landscape.solver import compiled, kwant_reference
+from disorder_landscape.solver.routes import thermal_average
 
 ENERGIES = np.linspace(0.001, 0.08, 16)
 """In meV, for the times per energy."""
@@ -48,7 +49,7 @@ def kwant(wire: Nanowire, mu: FloatArray, B: FloatArray) -> Stopwatch:
 def bare(wire: Nanowire, mu: FloatArray, B: FloatArray, omega: FloatArray = ENERGIES) -> Stopwatch:
     """Time the bare conductance, per energy."""
     count = mu.size * B.size * omega.size
-    return lambda: _seconds(lambda: compiled.real_conductance([wire], mu, B, omega)) / count
+    return lambda: _seconds(lambda: compiled.bare_conductance([wire], mu, B, omega)) / count
 
 
 def gradient(wire: Nanowire, mu: FloatArray, B: FloatArray) -> Stopwatch:
@@ -71,7 +72,7 @@ def sets(wires: list[Nanowire], mu: FloatArray, B: FloatArray, threads: int = 1)
 
     def average() -> None:
         with threads_at_work(threads):
-            exact_average(wires, mu, B, BIASES, TEMPERATURE)
+            thermal_average(wires, mu, B, BIASES, TEMPERATURE)
 
     return lambda: _seconds(average) / (len(wires) * mu.size * B.size)
 

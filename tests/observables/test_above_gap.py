@@ -6,6 +6,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
+import arithmetics
 from disorder_landscape import Nanowire
 from disorder_landscape.model import hamiltonian as h
 from disorder_landscape.solver import compiled, kwant_reference
@@ -16,7 +17,7 @@ hot_energies = st.floats(0.1200001, 0.6)
 
 def solve(wire, mu, B, omega, **options):
     omega = np.atleast_1d(omega)
-    return compiled.complex_conductance([wire], np.array([mu]), np.array([B]), omega, **options)[
+    return arithmetics.complex_conductance([wire], np.array([mu]), np.array([B]), omega, **options)[
         0, 0, 0
     ]
 
@@ -93,7 +94,7 @@ def test_kwant_gives_the_same(seed, mu, B, omega):
 def test_below_the_gap_it_is_the_real_recursion(seed, mu, B, omega):
     wire = random_wire(seed)
     arguments = [wire], np.array([mu]), np.array([B]), np.array([omega])
-    real = compiled.real_conductance(*arguments)[0, 0, 0]
+    real = compiled.bare_conductance(*arguments)[0, 0, 0]
     assert_allclose(solve(wire, mu, B, omega), real, atol=1e-8 if omega < 0.11999 else 1e-7)
 
 
@@ -117,7 +118,7 @@ def test_without_a_parent_nothing_is_absorbed():
     omega = np.linspace(0.125, 0.4, 40)
     hot = solve(Nanowire(V, gamma=0.0), 0.3, 0.4, omega)
     arguments = [Nanowire(V, gamma=0.0, delta0=1.0)], np.array([0.3]), np.array([0.4]), omega
-    assert_allclose(hot, compiled.real_conductance(*arguments)[0, 0, 0], atol=1e-9)
+    assert_allclose(hot, compiled.bare_conductance(*arguments)[0, 0, 0], atol=1e-9)
     assert_allclose(hot[..., 0], hot[..., 3], atol=1e-9)
     almost = solve(Nanowire(V, gamma=1e-9), 0.3, 0.4, omega)
     assert_allclose(hot, almost, atol=1e-3)
@@ -133,6 +134,6 @@ def test_the_shortest_wires(wire):
 def test_lanes_leave_no_trace():
     wires = [random_wire(i, sites=20) for i in range(2)]
     mu, B, omega = np.linspace(0, 0.6, 3), np.array([0.1, 0.7]), np.linspace(0.121, 0.5, 7)
-    grid = compiled.complex_conductance(wires, mu, B, omega)
+    grid = arithmetics.complex_conductance(wires, mu, B, omega)
     for w, i, j, k in np.ndindex(2, 3, 2, 7):
         np.testing.assert_array_equal(grid[w, i, j, k], solve(wires[w], mu[i], B[j], omega[k])[0])

@@ -6,6 +6,7 @@ from hypothesis import example, given, settings
 from numpy.testing import assert_allclose
 from scipy.optimize import brentq
 
+import arithmetics
 from disorder_landscape import Nanowire, conductance, topological_visibility
 from disorder_landscape.model import hamiltonian
 from disorder_landscape.solver import compiled, kwant_reference
@@ -14,7 +15,7 @@ from random_wires import energies, fields, mus, random_wire, seeds
 
 def both(wire, mu, B, omega):
     arguments = [wire], np.array([mu]), np.array([B]), np.array([omega])
-    return compiled.real_conductance(*arguments), kwant_reference.bare_conductance(*arguments)
+    return compiled.bare_conductance(*arguments), kwant_reference.bare_conductance(*arguments)
 
 
 @settings(max_examples=150)
@@ -105,8 +106,8 @@ def test_a_level_at_the_energy_switches_to_pivoted_elimination():
     mu, B = 0.1, 0.5
     omega = level_of_the_inner_sites(wire, mu, B)
     arguments = [wire], np.array([mu]), np.array([B]), np.array([omega])
-    trusting = compiled.real_conductance(*arguments, growth_limit=np.inf)
-    checked = compiled.real_conductance(*arguments)
+    trusting = compiled.bare_conductance(*arguments, growth_limit=np.inf)
+    checked = compiled.bare_conductance(*arguments)
     kwant = kwant_reference.bare_conductance(*arguments)
     assert abs(trusting - kwant).max() > 1e-6  # so the check is needed here
     assert_allclose(checked, kwant, atol=1e-9)
@@ -116,23 +117,23 @@ def test_a_level_at_the_energy_switches_to_pivoted_elimination():
 @given(seeds, mus, fields, energies)
 def test_pivoted_elimination_agrees_everywhere(seed, mu, B, omega):
     arguments = [random_wire(seed)], np.array([mu]), np.array([B]), np.array([omega])
-    pivoted = compiled.real_conductance(*arguments, growth_limit=0.0)
-    assert_allclose(pivoted, compiled.real_conductance(*arguments), atol=1e-8)
+    pivoted = compiled.bare_conductance(*arguments, growth_limit=0.0)
+    assert_allclose(pivoted, compiled.bare_conductance(*arguments), atol=1e-8)
 
 
 def test_lanes_and_threads_leave_no_trace():
     """A grid gives the very bits that its points give one by one, on any number of threads."""
     wires = [random_wire(i) for i in range(3)]
     mu, B, omega = np.linspace(0, 0.6, 5), np.array([0.1, 0.7]), np.linspace(0, 0.1, 7)
-    grid = compiled.real_conductance(wires, mu, B, omega)
+    grid = compiled.bare_conductance(wires, mu, B, omega)
     for index in np.ndindex(3, 5, 2, 7):
         w, i, j, k = index
-        point = compiled.real_conductance([wires[w]], mu[i : i + 1], B[j : j + 1], omega[k : k + 1])
+        point = compiled.bare_conductance([wires[w]], mu[i : i + 1], B[j : j + 1], omega[k : k + 1])
         np.testing.assert_array_equal(grid[index], point[0, 0, 0, 0])
     for threads in (1, 3):
         before = compiled.core.set_threads(threads)
         try:
-            np.testing.assert_array_equal(grid, compiled.real_conductance(wires, mu, B, omega))
+            np.testing.assert_array_equal(grid, compiled.bare_conductance(wires, mu, B, omega))
         finally:
             compiled.core.set_threads(before)
 
@@ -172,12 +173,12 @@ def test_majorana_modes_leave_enough_digits_at_zero_energy(name):
     arguments = [wire], np.zeros(1), np.array([B])
     omega = np.array([0.0])
     kwant = kwant_reference.bare_conductance(*arguments, omega)
-    trusting = compiled.real_conductance(*arguments, omega, growth_limit=np.inf)
+    trusting = compiled.bare_conductance(*arguments, omega, growth_limit=np.inf)
     assert abs(trusting - kwant).max() > 1e-11  # so the check is needed here
     for found in (
-        compiled.real_conductance(*arguments, omega),
-        compiled.complex_conductance(*arguments, omega),
-        compiled.tilted_conductance(*arguments, omega, 1e-15),
+        compiled.bare_conductance(*arguments, omega),
+        arithmetics.complex_conductance(*arguments, omega),
+        arithmetics.tilted_conductance(*arguments, omega, 1e-15),
     ):
         assert_allclose(found, kwant, atol=1e-11)
     assert_allclose(
@@ -191,7 +192,7 @@ def test_paper_wires_are_seldom_pivoted():
     """At most one lane in a thousand, at ω = 0, where Majorana modes are: pivoting is slow."""
     wires = [Nanowire(np.zeros(300))] + [random_wire(i) for i in range(4)]
     grid = wires, np.linspace(0, 0.6, 15), np.linspace(0, 0.8, 15), np.zeros(1)
-    differ = compiled.real_conductance(*grid) != compiled.real_conductance(
+    differ = compiled.bare_conductance(*grid) != compiled.bare_conductance(
         *grid, growth_limit=np.inf
     )
     assert differ.any(axis=(-1, -2)).mean() < 1e-3

@@ -10,9 +10,9 @@ from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.model.disorder import disorder_realization, potential_from_components
 from disorder_landscape.model.parameters import BIAS
-from disorder_landscape.observables.conductance import exact_average
 from disorder_landscape.solver import compiled
 from disorder_landscape.solver.quadrature import thermal_quadrature
+from disorder_landscape.solver.routes import thermal_average
 from random_wires import random_wire
 
 
@@ -29,7 +29,7 @@ def point(seed):
 def test_the_estimate_bounds_the_error(seed):
     """Of the first six, earlier estimates were up to 27 times below the error; 10 is at B = 0."""
     wire, arguments = random_wire(seed), point(seed)
-    found, estimate, _ = exact_average([wire], *arguments)
+    found, estimate, _ = thermal_average([wire], *arguments)
     exact = thermal_quadrature([wire], *arguments, panel=0.02, tolerance=1e-9, reach=20.0)
     error = abs(found - exact.conductance).max()
     assert error < 1e-4
@@ -43,7 +43,7 @@ def test_poles_that_all_but_meet(seed):
     V = disorder_realization(rng, 5, 300)[1]
     wire = dl.Nanowire(V, alpha=rng.uniform(6.4, 9.6))
     arguments = rng.uniform(0, 0.6, 1), rng.uniform(0, 0.8, 1), np.array(BIAS), 0.05
-    found, estimate, energies = exact_average([wire], *arguments)
+    found, estimate, energies = thermal_average([wire], *arguments)
     exact = thermal_quadrature([wire], *arguments, panel=0.05, tolerance=1e-8)
     assert abs(found - exact.conductance).max() <= estimate.item() + exact.error.item()
     assert energies.item() == compiled.core.NODES[0] + compiled.core.COMPARED
@@ -64,7 +64,7 @@ def test_conductances_are_smooth_where_two_poles_meet_and_part():
     wire = dl.Nanowire(V, alpha=7.849524852248008)
     u = np.linspace(-1, 1, 21)
     mu, B, bias = np.array([0.6 * 2 / 14]), 0.8 * 9 / 14 + 1e-5 * u, np.array(BIAS)
-    found, estimate, _ = exact_average([wire], mu, B, bias, 0.05)
+    found, estimate, _ = thermal_average([wire], mu, B, bias, 0.05)
     exact = thermal_quadrature([wire], mu, B[::10], bias, 0.05)
     assert abs(found[:, :, ::10] - exact.conductance).max() <= exact.error.max() < 1e-5
     along_B = found.reshape(u.size, -1)
@@ -82,7 +82,7 @@ def test_conductances_do_not_jump():
         config = DatasetConfig(realizations=1, components=components)
         for first in range(900_000, 900_150, 10):
             wires = [realization(config, index).wire for index in range(first, first + 10)]
-            G = exact_average(wires, np.linspace(0, 0.6, 20), twice, np.array(BIAS), 0.05)[0]
+            G = thermal_average(wires, np.linspace(0, 0.6, 20), twice, np.array(BIAS), 0.05)[0]
             jumps.append(abs(G[:, :, 1::2] - G[:, :, ::2]).max(axis=(-1, -2)).ravel())
     jump = np.concatenate(jumps)
     shares = ", ".join(f"{(jump > limit).sum()} by more than {limit}" for limit in (1e-5, 1e-4))
@@ -95,7 +95,7 @@ def test_conductances_do_not_jump():
 def test_two_poles_that_have_just_left_the_imaginary_axis():
     """At ±0.25 − 10.77i µeV; Rayleigh quotients that start on the axis stay there."""
     arguments = np.array([0.15]), np.array([0.7]), np.array(BIAS), 0.05
-    found, estimate, _ = exact_average([random_wire(5, sites=100)], *arguments)
+    found, estimate, _ = thermal_average([random_wire(5, sites=100)], *arguments)
     exact = thermal_quadrature([random_wire(5, sites=100)], *arguments)
     assert abs(found - exact.conductance).max() <= estimate.item() + exact.error.item()
 
@@ -118,7 +118,7 @@ def test_a_level_of_rounding_errors_takes_nothing_from_a_low_one():
     )
     wire = dl.Nanowire(potential_from_components(components, 300, 0.006685090660780135))
     arguments = np.array([0.6 * 3 / 19]), np.array([0.8 * 8 / 19]), np.array(BIAS), 0.05
-    found, estimate, _ = exact_average([wire], *arguments)
+    found, estimate, _ = thermal_average([wire], *arguments)
     exact = thermal_quadrature([wire], *arguments)
     assert abs(found - exact.conductance).max() <= estimate.item() + exact.error.item()
 
@@ -127,8 +127,8 @@ def test_a_level_of_rounding_errors_takes_nothing_from_a_low_one():
 def test_the_mirror_image_of_a_wire_swaps_left_and_right(seed):
     wire, (mu, B, bias, temperature) = random_wire(seed, sites=150), point(seed)
     mirrored = dl.Nanowire(wire.potential[::-1], alpha=wire.alpha)
-    G, error, _ = exact_average([wire], mu, B, bias, temperature)
-    other, other_error, _ = exact_average([mirrored], mu, B, bias, temperature)
+    G, error, _ = thermal_average([wire], mu, B, bias, temperature)
+    other, other_error, _ = thermal_average([mirrored], mu, B, bias, temperature)
     assert_allclose(G, other[..., [1, 0, 3, 2]], atol=(error + other_error).item(), rtol=0)
 
 
@@ -140,7 +140,7 @@ def grid():
 
 @pytest.fixture(scope="module")
 def whole(grid):
-    return exact_average(*grid)
+    return thermal_average(*grid)
 
 
 def same(found, expected):
@@ -151,13 +151,13 @@ def same(found, expected):
 def test_the_splitting_of_a_grid_leaves_no_trace(grid, whole):
     wires, mu, B, bias, temperature = grid
     for w, m, f in np.ndindex(len(wires), mu.size, B.size):
-        alone = exact_average([wires[w]], mu[m : m + 1], B[f : f + 1], bias, temperature)
+        alone = thermal_average([wires[w]], mu[m : m + 1], B[f : f + 1], bias, temperature)
         same([part[0, 0, 0] for part in alone], [part[w, m, f] for part in whole])
 
 
 def test_the_order_of_wires_potentials_and_fields_leaves_no_trace(grid, whole):
     wires, mu, B, bias, temperature = grid
-    found = exact_average(wires[::-1], mu[::-1], B[::-1], bias, temperature)
+    found = thermal_average(wires[::-1], mu[::-1], B[::-1], bias, temperature)
     same([part[::-1, ::-1, ::-1] for part in found], whole)
 
 
@@ -166,7 +166,7 @@ def test_the_number_of_threads_leaves_no_trace(grid, whole):
     try:
         for threads in (1, 2):
             compiled.core.set_threads(threads)
-            same(exact_average(*grid), whole)
+            same(thermal_average(*grid), whole)
     finally:
         compiled.core.set_threads(before)
 
@@ -176,16 +176,16 @@ def test_what_memory_held_before_leaves_no_trace():
     rng = np.random.default_rng(5)
     wires = [dl.Nanowire(disorder_realization(rng, 5, 300)[1], alpha=a) for a in (6.0, 7.0, 9.0)]
     grid = wires, np.linspace(0, 0.6, 5), np.array([0.3, 0.5]), np.array(BIAS), 0.05
-    first, junk = exact_average(*grid), []
+    first, junk = thermal_average(*grid), []
     for _ in range(8):
         junk.append(rng.random(rng.integers(1, 30_000)))
-        same(exact_average(*grid), first)
+        same(thermal_average(*grid), first)
 
 
 def test_the_number_of_biases_costs_no_accuracy(grid, whole):
     wires, mu, B, bias, temperature = grid
     for k in range(bias.size):
-        G, error, _ = exact_average(wires, mu, B, bias[k : k + 1], temperature)
+        G, error, _ = thermal_average(wires, mu, B, bias[k : k + 1], temperature)
         apart = abs(G[..., 0, :] - whole[0][..., k, :]).max(axis=-1)
         assert (apart <= 3 * (error + whole[1])).all()
         assert (apart < 1e-4).all()
@@ -213,7 +213,7 @@ def test_long_wires_cold_and_hot(temperature):
     assert (G.error < 1e-3).all()
 
 
-def test_what_an_exact_average_tells_of_itself():
+def test_what_an_thermal_average_tells_of_itself():
     wires = [random_wire(seed, sites=60) for seed in (1, 2)]
     G = dl.conductance(wires, [0.1, 0.4], [0.0, 0.3, 0.6], BIAS)
     for name in ("error", "energies"):

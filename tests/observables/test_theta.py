@@ -12,11 +12,12 @@ from numpy.testing import assert_allclose
 from scipy.linalg import block_diag
 from scipy.optimize import brentq
 
+import arithmetics
 from disorder_landscape import ArgumentError, Nanowire, conductance, topological_visibility
 from disorder_landscape.model import hamiltonian
-from disorder_landscape.observables.conductance import exact_average
-from disorder_landscape.solver import compiled, kwant_reference, tilted_average
+from disorder_landscape.solver import compiled, kwant_reference, routes, tilted_average
 from disorder_landscape.solver.quadrature import thermal_quadrature
+from disorder_landscape.solver.routes import thermal_average
 from disorder_landscape.solver.tilted_levels import BASIS, isolated_wire
 from random_wires import energies, fields, mus, random_wire, seeds
 
@@ -25,7 +26,7 @@ angles = st.one_of(st.floats(-3.2, 3.2), st.sampled_from([np.pi / 2, np.pi, 1e-7
 barriers = st.tuples(st.floats(-5.0, 30.0), st.floats(-5.0, 30.0))
 
 
-def bare(wire, mu, B, omega, theta, solve=compiled.tilted_conductance, **options):
+def bare(wire, mu, B, omega, theta, solve=arithmetics.tilted_conductance, **options):
     arguments = [wire], np.array([mu]), np.array([B]), np.atleast_1d(omega)
     return solve(*arguments, theta=theta, **options)[0, 0, 0]
 
@@ -128,7 +129,7 @@ def test_the_scattering_matrix_is_unitary(seed, mu, B, omega, theta):
 def test_at_no_angle_it_is_the_real_recursion(seed, mu, B, omega):
     wire = random_wire(seed)
     below = omega < wire.delta0
-    solve = compiled.real_conductance if below else compiled.complex_conductance
+    solve = compiled.bare_conductance if below else arithmetics.complex_conductance
     straight = solve([wire], np.array([mu]), np.array([B]), np.array([omega]))
     assert_allclose(bare(wire, mu, B, omega, 0.0), straight[0, 0, 0], atol=1e-8)
     assert_allclose(bare(wire, mu, B, omega, np.pi), straight[0, 0, 0], atol=1e-8)
@@ -174,7 +175,7 @@ def test_a_level_of_the_inner_sites_switches_to_pivoting():
 def test_the_small_matrix_has_the_ends_green_function_of_the_wire(seed, theta):
     wire, mu, B = random_wire(seed, sites=100), np.array([0.2]), np.array([0.5])
     z = np.linspace(0.005, 0.08, 16) + 0.001j
-    F = compiled.tilted_isolated_ends([wire], mu, B, z, theta)[0, 0, 0]
+    F = compiled.isolated_ends([wire], mu, B, z, theta)[0, 0, 0]
     A, u = isolated_wire(z, F)
     np.testing.assert_array_equal(A, -A.T)
     left_end = (BASIS @ u)[:4]  # which is not rotated
@@ -197,7 +198,7 @@ def test_the_small_matrix_has_the_ends_green_function_of_the_wire(seed, theta):
 def test_the_average_is_the_integral(seed, mu, B, theta, temperature):
     wire = replace(random_wire(seed), barrier=(15.0, 8.0))
     arguments = [wire], np.array([mu]), np.array([B]), BIAS, temperature
-    G, error, energies_ = exact_average(*arguments, theta)
+    G, error, energies_ = thermal_average(*arguments, theta)
     brute = thermal_quadrature(*arguments, tolerance=1e-7, panel=0.2, theta=theta)
     assert abs(G - brute.conductance).max() < 3e-6
     assert abs(G - brute.conductance).max() < error.max() < tilted_average.TOLERANCE
@@ -209,7 +210,7 @@ def test_a_level_that_no_lead_reaches_adds_nothing():
     wire, B, mu, theta = random_wire(3), 0.5, np.array([0.2]), 0.7
     average = tilted_average._Average(wire, B, BIAS, 0.004, theta)
     z = average.real[:10] + 1e-3j
-    F = compiled.tilted_isolated_ends([wire], mu, np.array([B]), z, theta)[0, 0, 0]
+    F = compiled.isolated_ends([wire], mu, np.array([B]), z, theta)[0, 0, 0]
     A, u = isolated_wire(z, F)
     pair = np.array([[0.0, 0.01], [-0.01, 0.0]])  # of levels at ±0.01 meV
     poles, residues = average._poles(A, u)
@@ -227,7 +228,7 @@ def test_a_level_that_no_lead_reaches_adds_nothing():
 def test_where_the_model_fails_the_integral_takes_over(monkeypatch):
     monkeypatch.setattr(tilted_average, "NODES", (2,))
     arguments = [random_wire(1)], np.array([0.3]), np.array([0.5]), BIAS[2:3], 0.05
-    found = exact_average(*arguments, 0.5)
+    found = thermal_average(*arguments, 0.5)
     brute = thermal_quadrature(*arguments, theta=0.5)
     np.testing.assert_array_equal(found[0], brute.conductance)
 
@@ -235,12 +236,12 @@ def test_where_the_model_fails_the_integral_takes_over(monkeypatch):
 def test_a_grid_is_its_points_and_without_a_field_the_angle_is_nothing():
     wires = [random_wire(i, sites=60) for i in range(2)]
     mu, B = np.array([0.1, 0.4]), np.array([0.0, 0.6])
-    grid = exact_average(wires, mu, B, BIAS, 0.05, 0.5)
+    grid = thermal_average(wires, mu, B, BIAS, 0.05, 0.5)
     for w, i, j in np.ndindex(2, 2, 2):
-        alone = exact_average([wires[w]], mu[i : i + 1], B[j : j + 1], BIAS, 0.05, 0.5)
+        alone = thermal_average([wires[w]], mu[i : i + 1], B[j : j + 1], BIAS, 0.05, 0.5)
         for whole, one in zip(grid, alone, strict=True):
             assert_allclose(whole[w, i, j], one[0, 0, 0], atol=1e-12)
-    straight = exact_average(wires, mu, B, BIAS, 0.05)
+    straight = thermal_average(wires, mu, B, BIAS, 0.05)
     np.testing.assert_array_equal(grid[0][:, :, 0], straight[0][:, :, 0])
     assert abs(grid[0] - straight[0])[:, :, 1].max() > 1e-3
 
@@ -296,8 +297,8 @@ def test_in_a_tiny_field_leads_without_spin_orbit_keep_their_digits(B):
         found, bare(wire, 0.05, B, 0.03, 0.3, solve=kwant_reference.bare_conductance), atol=1e-8
     )
     arguments = [wire], np.array([0.05]), np.array([B]), BIAS, 0.05
-    G, error, _ = exact_average(*arguments, theta=0.3)
-    straight, also_wrong, _ = exact_average(*arguments)
+    G, error, _ = thermal_average(*arguments, theta=0.3)
+    straight, also_wrong, _ = thermal_average(*arguments)
     assert_allclose(G, straight, rtol=0, atol=(error + also_wrong).item() + 2 * B)
 
 
@@ -338,7 +339,7 @@ def test_poles_far_outside_the_window_are_left_to_the_smooth_part(seed, sites, l
     rng = np.random.default_rng([12, seed])
     wire = Nanowire(rng.normal(0, 0.5, sites), lead_mu=lead_mu, barrier=(0.0, 0.0))
     arguments = [wire], np.array([0.3]), np.array([0.4]), BIAS, 0.05
-    G, error, _ = tilted_average.thermal_conductance(*arguments, theta=0.7)
+    G, error, _ = routes.closed_form(*arguments, theta=0.7)
     exact = thermal_quadrature(*arguments, theta=0.7)
     assert abs(G - exact.conductance).max() <= 3 * error.item() + exact.error.item()
 
@@ -346,7 +347,7 @@ def test_poles_far_outside_the_window_are_left_to_the_smooth_part(seed, sites, l
 def test_two_sites_without_a_parent_along_the_spin_orbit_field():
     wire = Nanowire(np.zeros(2), gamma=0.0)
     arguments = [wire], np.array([0.3]), np.array([0.4]), BIAS, 0.05
-    G, error, _ = exact_average(*arguments, theta=np.pi / 2)
+    G, error, _ = thermal_average(*arguments, theta=np.pi / 2)
     exact = thermal_quadrature(*arguments, theta=np.pi / 2)
     assert abs(G - exact.conductance).max() <= 3 * error.item() + exact.error.item()
 

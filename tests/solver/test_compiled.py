@@ -20,10 +20,11 @@ def on_a_grid(core):
     arrays, kT = compiled.handed_over(wires), BOLTZMANN * TEMPERATURE
     mu, B, omega = rng.uniform(0, 0.6, 5), rng.uniform(-0.1, 0.8, 3), rng.uniform(0, 0.11, 7)
     return [
-        core.real_conductance(*arrays, mu, B, omega, compiled.GROWTH_LIMIT),
-        core.real_conductance(*arrays, mu, B, omega, 0.0),  # pivoted
-        core.complex_conductance(*arrays, mu, B, 5 * omega, compiled.GROWTH_LIMIT),
-        core.reflection_determinant(*arrays, mu, B, np.zeros(1), compiled.GROWTH_LIMIT),
+        core.conductance(*arrays, mu, B, omega, 0.0, compiled.GROWTH_LIMIT),
+        core.conductance(*arrays, mu, B, omega, 0.0, 0.0),  # pivoted
+        core.conductance(*arrays, mu, B, 5 * omega, 0.0, compiled.GROWTH_LIMIT),
+        core.internals.complex_conductance(*arrays, mu, B, omega, 0.0, compiled.GROWTH_LIMIT),
+        core.reflection_determinant(*arrays, mu, B, 0.0, compiled.GROWTH_LIMIT),
         *core.thermal_conductance(
             *arrays, mu, B, np.array(BIAS), kT, core.TOLERANCE, compiled.GROWTH_LIMIT
         ),
@@ -110,4 +111,4 @@ def test_a_level_of_a_closed_wire_reflects_nothing_that_comes_in():
     )
     mu, zero = np.array([-0.1595866250045771]), np.zeros(1)
     assert (compiled.reflection_determinant([wire], mu, zero) == 1).all()
-    assert (compiled.real_conductance([wire], mu, zero, zero) == 0).all()
+    assert (compiled.bare_conductance([wire], mu, zero, zero) == 0).all()

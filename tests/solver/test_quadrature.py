@@ -50,7 +50,7 @@ def test_the_energy_grid_converges_to_it():
     G = thermal(wire, 0.3, 0.5, 0.05).conductance[0, 0, 0]
     edges = np.arange(0.0, 0.117, spacing)
     omega = (edges[1:] + edges[:-1]) / 2
-    G0 = compiled.real_conductance([wire], np.array([0.3]), np.array([0.5]), omega)[0, 0, 0]
+    G0 = compiled.bare_conductance([wire], np.array([0.3]), np.array([0.5]), omega)[0, 0, 0]
     weights = [np.diff(expit((edges + s * BIAS[:, None]) / kT), axis=1) for s in (-1, 1)]
     assert_allclose(np.einsum("svk,ksg->vg", weights, G0), G, atol=2e-3)
 
@@ -79,7 +79,7 @@ def test_the_coldest_is_the_bare_conductance():
     wire = Nanowire(np.zeros(20), barrier=(5.0, 5.0))
     cold = thermal(wire, 0.3, 0.4, 1e-4, bias=[-0.05, 0.05]).conductance[0, 0, 0]
     arguments = [wire], np.array([0.3]), np.array([0.4]), np.array([0.05])
-    assert_allclose(cold, compiled.real_conductance(*arguments)[0, 0, 0, 0, ::-1], atol=1e-4)
+    assert_allclose(cold, compiled.bare_conductance(*arguments)[0, 0, 0, 0, ::-1], atol=1e-4)
 
 
 @pytest.mark.parametrize("gamma", [0.0, 0.15])
@@ -107,10 +107,10 @@ def test_a_temperature_that_is_not_positive_is_refused(temperature):
 
 
 def test_what_is_no_number_has_an_infinite_error_and_a_warning(monkeypatch):
-    def failing(wires, mu, B, omega):
+    def failing(wires, mu, B, omega, theta):
         return np.full((len(wires), mu.size, B.size, omega.size, 2, 4), np.nan)
 
-    monkeypatch.setattr(compiled, "real_conductance", failing)
+    monkeypatch.setattr(compiled, "bare_conductance", failing)
     found = thermal(random_wire(1, sites=10), 0.3, 0.5, 0.05)
     assert found.error == np.inf
     with pytest.warns(RuntimeWarning, match="At 1 of 1 points"):

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
+import arithmetics
 from disorder_landscape.model import hamiltonian
 from disorder_landscape.solver import compiled, kwant_reference
 from random_wires import energies, fields, mus, random_wire, seeds
@@ -26,7 +27,7 @@ def at(mu, B, omega):
 def test_conductances_are_those_of_kwant(seed, mu, B, omega, theta, barrier):
     wire = replace(random_wire(seed, sites=100), barrier=barrier)
     arguments = [wire], *at(mu, B, omega)
-    found = compiled.tilted_conductance(*arguments, theta)
+    found = arithmetics.tilted_conductance(*arguments, theta)
     expected = kwant_reference.bare_conductance(*arguments, theta)
     assert_allclose(found, expected, atol=1e-9, rtol=0)
 
@@ -36,7 +37,7 @@ def test_conductances_are_those_of_kwant(seed, mu, B, omega, theta, barrier):
 def test_determinants_are_those_of_kwant(seed, mu, B, theta, barrier):
     wire = replace(random_wire(seed, sites=100), barrier=barrier)
     arguments = [wire], np.array([mu]), np.array([B]), theta
-    found = compiled.tilted_determinant(*arguments)
+    found = compiled.reflection_determinant(*arguments)
     assert_allclose(found, kwant_reference.reflection_determinant(*arguments), atol=1e-9, rtol=0)
 
 
@@ -45,23 +46,23 @@ def test_determinants_are_those_of_kwant(seed, mu, B, theta, barrier):
 def test_along_the_wire_it_is_the_symmetric_elimination(seed, mu, B, omega, dissipation):
     wire = replace(random_wire(seed, sites=100), dissipation=dissipation)
     arguments = [wire], *at(mu, B, omega)
-    symmetric = compiled.complex_conductance(*arguments)
-    assert_allclose(compiled.tilted_conductance(*arguments, 0.0), symmetric, atol=1e-9, rtol=0)
+    symmetric = arithmetics.complex_conductance(*arguments)
+    assert_allclose(arithmetics.tilted_conductance(*arguments, 0.0), symmetric, atol=1e-9, rtol=0)
 
 
 @settings(max_examples=30)
 @given(seeds, mus, fields, st.one_of(energies, above), angles)
 def test_pivoting_changes_nothing_above_the_gap_either(seed, mu, B, omega, theta):
     arguments = [random_wire(seed, sites=60)], *at(mu, B, omega), theta
-    pivoted = compiled.tilted_conductance(*arguments, growth_limit=0.0)
-    assert_allclose(compiled.tilted_conductance(*arguments), pivoted, atol=1e-9, rtol=0)
+    pivoted = arithmetics.tilted_conductance(*arguments, growth_limit=0.0)
+    assert_allclose(arithmetics.tilted_conductance(*arguments), pivoted, atol=1e-9, rtol=0)
 
 
 @pytest.mark.parametrize("theta", [0.4, -2.0])
 def test_the_ends_are_those_of_the_inverted_hamiltonian(theta):
     wire, z = random_wire(1, sites=30), np.array([0.02 + 0.003j, 0.05 + 0.001j])
     B, mu = np.array([0.5]), np.array([0.2])
-    found = compiled.tilted_isolated_ends([wire], mu, B, z, theta)[0, 0, 0]
+    found = compiled.isolated_ends([wire], mu, B, z, theta)[0, 0, 0]
     phi = np.arctan2(wire.spin_orbit_hopping, wire.hopping) * (wire.sites - 1)
     turn = np.kron(np.eye(2), [[np.cos(phi), -np.sin(phi)], [np.sin(phi), np.cos(phi)]])
     U = np.kron([[1, 0], [0, 0]], np.eye(4)) + np.kron([[0, 0], [0, 1]], turn)
@@ -81,9 +82,9 @@ def test_every_variant_gives_the_same(monkeypatch):
     for name in compiled.supported():
         monkeypatch.setattr(compiled, "core", compiled.variant(name))
         results[name] = (
-            compiled.tilted_conductance(wires, mu, B, omega, theta),
-            compiled.tilted_determinant(wires, mu, B, theta),
-            compiled.tilted_isolated_ends(wires, mu, B, z, theta),
+            arithmetics.tilted_conductance(wires, mu, B, omega, theta),
+            compiled.reflection_determinant(wires, mu, B, theta),
+            compiled.isolated_ends(wires, mu, B, z, theta),
             np.array([compiled.lead_self_energies(wires[0], field, omega, theta) for field in B]),
         )
     for name, found in results.items():

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+import arithmetics
 from disorder_landscape import Nanowire
 from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.model.parameters import BIAS, BOLTZMANN, TEMPERATURE
@@ -75,7 +76,7 @@ def test_1000_conductances_at_zero_temperature_are_those_of_python(wasm):
         mu, B, omega = random_points(rng, 5)
         arrays = compiled.handed_over([wire])
         requests.append(request("conductance", [wire], (mu, B, omega), [160]))
-        expected.append(core.real_conductance(*arrays, mu, B, omega, compiled.GROWTH_LIMIT))
+        expected.append(core.conductance(*arrays, mu, B, omega, 0.0, compiled.GROWTH_LIMIT))
         requests.append(request("reflection_determinant", [wire], (mu, B), [8]))
         expected.append(compiled.reflection_determinant([wire], mu, B))
     answers = answers_of(wasm, requests)
@@ -89,9 +90,9 @@ def test_conductances_above_the_gap_and_with_dissipation_are_those_of_python(was
     mu, B, omega = np.array([0.2]), np.array([0.3, 0.5]), np.array([0.05, 0.2, 0.5])
     clean = RANDOM[:2]
     leaky = [Nanowire(w.potential, alpha=w.alpha, dissipation=0.01) for w in clean]
-    above = compiled.complex_conductance(clean, mu, B, omega[1:])
-    below = compiled.real_conductance(clean, mu, B, omega[:1])
-    everywhere = compiled.complex_conductance(leaky, mu, B, omega)
+    above = arithmetics.complex_conductance(clean, mu, B, omega[1:])
+    below = compiled.bare_conductance(clean, mu, B, omega[:1])
+    everywhere = arithmetics.complex_conductance(leaky, mu, B, omega)
     grids = mu, B, omega
     answers = answers_of(
         wasm, [request("conductance", wires, grids, [96]) for wires in (clean, leaky)]

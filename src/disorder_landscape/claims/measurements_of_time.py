@@ -23,8 +23,8 @@ from disorder_landscape.model.parameters import (
     FloatArray,
     Nanowire,
 )
-from disorder_landscape.observables.conductance import exact_average
 from disorder_landscape.solver import kwant_reference
+from disorder_landscape.solver.routes import thermal_average
 
 TURNS = 5
 """Turns of a stopwatch, of which the median counts; the first, which warms up, is one more."""
@@ -97,7 +97,7 @@ def _core_seconds(threads: int) -> stopwatches.Stopwatch:
     def watch() -> float:
         with stopwatches.threads_at_work(min(threads, cores())):
             started = time.process_time()
-            exact_average(wires, mu, B, stopwatches.BIASES, TEMPERATURE)
+            thermal_average(wires, mu, B, stopwatches.BIASES, TEMPERATURE)
             return (time.process_time() - started) / (len(wires) * mu.size * B.size)
 
     return watch

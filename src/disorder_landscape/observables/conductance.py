@@ -8,23 +8,14 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from disorder_landscape.arguments import grid_in, number_in
 from disorder_landscape.model.hamiltonian import FULL_TURN
 from disorder_landscape.model.parameters import BOLTZMANN, TEMPERATURE, FloatArray, Nanowire
 from disorder_landscape.model.quantities import CONDUCTANCES, labelled
-from disorder_landscape.solver import compiled, tilted_average
+from disorder_landscape.solver import routes
 from disorder_landscape.solver.energy_grid import ENERGY_SPACING, thermal_grid
-from disorder_landscape.solver.quadrature import thermal_quadrature
-from disorder_landscape.solver.routes import solver_functions, wires_of
-
-BLOCK_ENERGIES = {"fast": 2**18, "kwant": 2**8, "tilted": 2**14}
-"""Energies that each solver is given at a time: about 16 MB and one second."""
-BLOCK_SETS = {"fast": 2**12, "tilted": 2**5}
-"""Sets (wire, μ, B) that are averaged exactly at a time: one or two seconds."""
-BELOW_GAP = 0.98
-"""Part of the gap up to which the thermal window is taken as rational in energy."""
 
 Progress = Callable[[int, int], None]
 
@@ -74,7 +65,7 @@ def conductance(
         If a grid is empty, unsorted or out of range, the temperature negative, the bias or its
         thermal window beyond the gap, the solver unknown, or the wires of unequal length.
     """
-    wires = wires_of(wire)
+    wires, solver = routes.wires_of(wire), routes.known_solver(solver)
     delta0 = min(w.delta0 for w in wires)
     grids = {
         "mu": grid_in("mu", mu, -1e3, 1e3, "meV"),
@@ -83,18 +74,15 @@ def conductance(
     }
     temperature = number_in("temperature", temperature, 0.0, 10.0, "K")
     theta = number_in("theta", theta, -FULL_TURN, FULL_TURN, "radians")
-    dissipative = any(w.dissipation > 0 for w in wires)
-    bare = solver_functions(solver, theta, dissipative)[0]
-    route = "tilted" if solver == "fast" and theta != 0 else solver
     shape = (len(wires), grids["mu"].size, grids["B"].size)
     told = progress if progress is not None else lambda done, total: None
     exact = temperature > 0 and solver == "fast" and energy_spacing is None
     G = np.empty((*shape, grids["bias"].size, 4))
     error, energies = np.zeros(shape), np.zeros(shape, dtype=np.int64)
     if exact:
-        for some, points, fields in _blocks(shape, BLOCK_SETS[route]):
+        for some, points, fields in _blocks(shape, routes.sets_at_once(theta)):
             at = some, points, fields
-            G[at], error[at], energies[at] = exact_average(
+            G[at], error[at], energies[at] = routes.thermal_average(
                 wires[some],
                 grids["mu"][points],
                 grids["B"][fields],
@@ -111,8 +99,10 @@ def conductance(
             omega, weights = thermal_grid(grids["bias"], temperature, delta0, spacing)
         else:
             omega, weights = _bare_grid(grids["bias"])
-        for some, points, fields in _blocks(shape, BLOCK_ENERGIES[route] // omega.size):
-            G0 = bare(wires[some], grids["mu"][points], grids["B"][fields], omega)
+        most = routes.energies_at_once(solver, theta) // omega.size
+        for some, points, fields in _blocks(shape, most):
+            some_wires, mus, fs = wires[some], grids["mu"][points], grids["B"][fields]
+            G0 = routes.bare_conductance(some_wires, mus, fs, omega, theta, solver)
             G[some, points, fields] = np.einsum("wmbkse,vks->wmbve", G0, weights)
             told(G0[..., 0, 0, 0].size, error.size)
     missing = np.isnan(G).any(axis=(3, 4)).sum()
@@ -129,46 +119,6 @@ def conductance(
         attrs["barrier"] = wires[0].barrier
     dataset = labelled(xr.Dataset(data, coords=grids, attrs=attrs))
     return dataset.isel(realization=0) if isinstance(wire, Nanowire) else dataset
-
-
-def exact_average(
-    wires: Sequence[Nanowire],
-    mu: FloatArray,
-    B: FloatArray,
-    bias: FloatArray,
-    temperature: float,
-    theta: float = 0.0,
-) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
-    """Return the thermal average, its estimated error and the number of energies it took.
-
-    Rational in energy and in closed form where the thermal window stays below the gap
-    (`compiled`, `tilted_average`); by adaptive quadrature (`quadrature`) where it does
-    not or the wire has dissipation, and for the rare set of which no rational model within the
-    tolerance is found.
-
-    Returns
-    -------
-    G : array, shape (wire, mu, B, bias, 4)
-        G_LL, G_RR, G_LR, G_RL in e²/h.
-    error, energies : array, shape (wire, mu, B)
-    """
-    window = abs(bias).max() + compiled.core.REACH * BOLTZMANN * temperature
-    dissipative = any(w.dissipation > 0 for w in wires)
-    if dissipative or window > BELOW_GAP * min(w.delta0 for w in wires):
-        return thermal_quadrature(wires, mu, B, bias, temperature, theta=theta)
-    if theta == 0:
-        G, error, energies = compiled.thermal_conductance(wires, mu, B, bias, temperature)
-    else:
-        G, error, energies = tilted_average.thermal_conductance(
-            wires, mu, B, bias, temperature, theta
-        )
-    for w, m, f in np.argwhere(~(error <= compiled.core.TOLERANCE)):
-        one = thermal_quadrature(
-            [wires[w]], mu[m : m + 1], B[f : f + 1], bias, temperature, theta=theta
-        )
-        G[w, m, f], error[w, m, f] = one.conductance[0, 0, 0], one.error[0, 0, 0]
-        energies[w, m, f] += one.energies[0, 0, 0]
-    return G, error, energies
 
 
 def _bare_grid(bias: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -13,7 +14,7 @@ from disorder_landscape.arguments import grid_in, number_in, require
 from disorder_landscape.model.hamiltonian import FULL_TURN
 from disorder_landscape.model.parameters import FloatArray, Nanowire
 from disorder_landscape.model.quantities import labelled
-from disorder_landscape.solver.routes import solver_functions, wires_of
+from disorder_landscape.solver import routes
 
 
 def topological_visibility(
@@ -48,7 +49,7 @@ def topological_visibility(
     ArgumentError
         As in `conductance`.
     """
-    wires = wires_of(wire)
+    wires, solver = routes.wires_of(wire), routes.known_solver(solver)
     grids = {"mu": grid_in("mu", mu, -1e3, 1e3, "meV"), "B": grid_in("B", B, -100.0, 100.0, "T")}
     without = all(w.dissipation == 0 for w in wires)
     must = "have no dissipation for T_IV"
@@ -56,7 +57,11 @@ def topological_visibility(
     if not barrier:
         wires = [replace(w, barrier=(0.0, 0.0)) for w in wires]
     theta = number_in("theta", theta, -FULL_TURN, FULL_TURN, "radians")
-    determinant = solver_functions(solver, theta)[1](wires, grids["mu"], grids["B"])
+    determinant = routes.reflection_determinant(wires, grids["mu"], grids["B"], theta, solver)
+    missing = np.isnan(determinant).any(axis=1).sum()
+    if missing:
+        message = f"At {missing} of {determinant[:, 0].size} points (wire, μ, B) T_IV is no number"
+        warnings.warn(f"{message}: there the solver failed.", RuntimeWarning, stacklevel=2)
     coords = {"lead": ["L", "R"], **grids}
     data = {"T_IV": (("realization", *coords), determinant)}
     T: xr.DataArray = labelled(xr.Dataset(data, coords=coords))["T_IV"]

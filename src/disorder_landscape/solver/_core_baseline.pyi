@@ -19,20 +19,21 @@ GROWTH_LIMIT: float
 def instruction_set() -> str: ...
 def supported_variants() -> list[str]: ...
 def set_threads(count: int) -> int: ...
-def real_conductance(
+def conductance(
     V: FloatArray,
     parameters: FloatArray,
     mu: FloatArray,
     B: FloatArray,
     omega: FloatArray,
+    theta: float,
     growth_limit: float,
 ) -> FloatArray: ...
-def complex_conductance(
+def reflection_determinant(
     V: FloatArray,
     parameters: FloatArray,
     mu: FloatArray,
     B: FloatArray,
-    omega: FloatArray,
+    theta: float,
     growth_limit: float,
 ) -> FloatArray: ...
 def thermal_conductance(
@@ -45,14 +46,6 @@ def thermal_conductance(
     tolerance: float,
     growth_limit: float,
 ) -> tuple[FloatArray, FloatArray, FloatArray]: ...
-def reflection_determinant(
-    V: FloatArray,
-    parameters: FloatArray,
-    mu: FloatArray,
-    B: FloatArray,
-    omega: FloatArray,
-    growth_limit: float,
-) -> FloatArray: ...
 def conductance_gradient(
     V: FloatArray,
     parameters: FloatArray,
@@ -65,25 +58,7 @@ def conductance_gradient(
     spin_orbit_slope: float,
     growth_limit: float,
 ) -> tuple[FloatArray, FloatArray]: ...
-def tilted_conductance(
-    V: FloatArray,
-    parameters: FloatArray,
-    mu: FloatArray,
-    B: FloatArray,
-    omega: FloatArray,
-    theta: float,
-    growth_limit: float,
-) -> FloatArray: ...
-def tilted_determinant(
-    V: FloatArray,
-    parameters: FloatArray,
-    mu: FloatArray,
-    B: FloatArray,
-    omega: FloatArray,
-    theta: float,
-    growth_limit: float,
-) -> FloatArray: ...
-def tilted_isolated_ends(
+def isolated_ends(
     V: FloatArray,
     parameters: FloatArray,
     mu: FloatArray,

@@ -24,17 +24,14 @@ if TYPE_CHECKING:
     from disorder_landscape.solver import _core_baseline as core
 
 __all__ = [
-    "complex_conductance",
+    "bare_conductance",
     "conductance_gradient",
     "core",
     "in_rotated_frame",
+    "isolated_ends",
     "lead_self_energies",
-    "real_conductance",
     "reflection_determinant",
     "thermal_conductance",
-    "tilted_conductance",
-    "tilted_determinant",
-    "tilted_isolated_ends",
 ]
 
 CHOICE = "DISORDER_LANDSCAPE_CORE"
@@ -119,43 +116,34 @@ def handed_over(wires: Sequence[Nanowire]) -> tuple[FloatArray, FloatArray]:
     return V, np.array(parameters)
 
 
-def real_conductance(
+def bare_conductance(
     wires: Sequence[Nanowire],
     mu: FloatArray,
     B: FloatArray,
     omega: FloatArray,
+    theta: float = 0.0,
     growth_limit: float = GROWTH_LIMIT,
 ) -> FloatArray:
-    """Return the T = 0 conductances at ±ω below the gap, 0 ≤ ω < Δ₀, without dissipation.
+    """Return the T = 0 conductances at ±ω, ω ≠ Δ₀ of each wire, in a field at the angle θ.
 
     Returns
     -------
     array, shape (wire, mu, B, omega, 2, 4)
         In e²/h; the last axes are the sign of ω (+, −) and G_LL, G_RR, G_LR, G_RL.
     """
-    G: FloatArray = core.real_conductance(*handed_over(wires), mu, B, omega, growth_limit)
-    return G
-
-
-def complex_conductance(
-    wires: Sequence[Nanowire],
-    mu: FloatArray,
-    B: FloatArray,
-    omega: FloatArray,
-    growth_limit: float = GROWTH_LIMIT,
-) -> FloatArray:
-    """Return the same at any real ω ≠ ±Δ₀ of each wire, with dissipation."""
-    G: FloatArray = core.complex_conductance(*handed_over(wires), mu, B, omega, growth_limit)
+    G: FloatArray = core.conductance(*handed_over(wires), mu, B, omega, theta, growth_limit)
     return G
 
 
 def reflection_determinant(
-    wires: Sequence[Nanowire], mu: FloatArray, B: FloatArray, growth_limit: float = GROWTH_LIMIT
+    wires: Sequence[Nanowire],
+    mu: FloatArray,
+    B: FloatArray,
+    theta: float = 0.0,
+    growth_limit: float = GROWTH_LIMIT,
 ) -> FloatArray:
-    """Return det r at ω = 0 of both ends, shape (wire, lead, mu, B)."""
-    T: FloatArray = core.reflection_determinant(
-        *handed_over(wires), mu, B, np.zeros(1), growth_limit
-    )
+    """Return det r at ω = 0 of both ends, without dissipation, shape (wire, lead, mu, B)."""
+    T: FloatArray = core.reflection_determinant(*handed_over(wires), mu, B, theta, growth_limit)
     return T
 
 
@@ -231,30 +219,7 @@ def conductance_gradient(
     return by_V, others
 
 
-def tilted_conductance(
-    wires: Sequence[Nanowire],
-    mu: FloatArray,
-    B: FloatArray,
-    omega: FloatArray,
-    theta: float,
-    growth_limit: float = GROWTH_LIMIT,
-) -> FloatArray:
-    """Return the same as `complex_conductance` in a field at the angle θ."""
-    G: FloatArray = core.tilted_conductance(*handed_over(wires), mu, B, omega, theta, growth_limit)
-    return G
-
-
-def tilted_determinant(
-    wires: Sequence[Nanowire], mu: FloatArray, B: FloatArray, theta: float
-) -> FloatArray:
-    """Return the same as `reflection_determinant` in a field at the angle θ."""
-    T: FloatArray = core.tilted_determinant(
-        *handed_over(wires), mu, B, np.zeros(1), theta, GROWTH_LIMIT
-    )
-    return T
-
-
-def tilted_isolated_ends(
+def isolated_ends(
     wires: Sequence[Nanowire], mu: FloatArray, B: FloatArray, z: ComplexArray, theta: float
 ) -> ComplexArray:
     """Return G of the ends of the wires without leads in a field at the angle θ, in 1/meV.
@@ -267,7 +232,7 @@ def tilted_isolated_ends(
     array, shape (wire, B, mu, z, 8, 8)
     """
     x, y = np.ascontiguousarray(z.real), np.ascontiguousarray(z.imag)
-    G: ComplexArray = core.tilted_isolated_ends(*handed_over(wires), mu, B, x, y, theta)
+    G: ComplexArray = core.isolated_ends(*handed_over(wires), mu, B, x, y, theta)
     return G
 
 

@@ -121,18 +121,8 @@ class _BareConductance:
     def __call__(self, omega: FloatArray) -> FloatArray:
         """Return G₀(±ω), shape (omega, 2, 4), for ω ≥ 0."""
         self.energies += omega.size
-        if self.theta != 0:
-            arguments = [self.wire], self.mu, self.B, omega, self.theta
-            return np.asarray(compiled.tilted_conductance(*arguments)[0, 0, 0])
-        G0 = np.empty((omega.size, 2, 4))
-        below = (omega < self.wire.delta0) & (self.wire.dissipation == 0)
-        for solve, some in (
-            (compiled.real_conductance, below),
-            (compiled.complex_conductance, ~below),
-        ):
-            if some.any():
-                G0[some] = solve([self.wire], self.mu, self.B, omega[some])[0, 0, 0]
-        return G0
+        arguments = [self.wire], self.mu, self.B, omega, self.theta
+        return np.asarray(compiled.bare_conductance(*arguments)[0, 0, 0])
 
 
 def _first_panels(

@@ -1,42 +1,29 @@
-"""The two solvers behind one signature, and the wires they take."""
+"""How what is asked of a wire is solved: the only place that decides.
+
+Bare conductances and det r come from the compiled core, which takes for each wire and energy the
+arithmetic that it allows (core/bare.hpp), or from Kwant. Thermal averages are exact, in closed form
+where they can be, or sums over a grid of energies, as the paper's.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from functools import partial
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
 
 from disorder_landscape.arguments import ArgumentError, require
-from disorder_landscape.model.parameters import FloatArray, Nanowire
+from disorder_landscape.model.parameters import BOLTZMANN, FloatArray, Nanowire
 from disorder_landscape.solver import compiled
+from disorder_landscape.solver.quadrature import ThermalConductance, thermal_quadrature
 
-BareConductance = Callable[[Sequence[Nanowire], FloatArray, FloatArray, FloatArray], FloatArray]
-Determinant = Callable[[Sequence[Nanowire], FloatArray, FloatArray], FloatArray]
-
-
-def solver_functions(
-    name: str, theta: float = 0.0, dissipative: bool = False
-) -> tuple[BareConductance, Determinant]:
-    """Return `bare_conductance` and `reflection_determinant` of "fast" or "kwant" at the angle θ.
-
-    The determinant is that of wires without dissipation. Kwant is imported only when it is asked
-    for: it takes a second or two.
-    """
-    if name == "fast" and theta != 0:
-        return (
-            partial(compiled.tilted_conductance, theta=theta),
-            partial(compiled.tilted_determinant, theta=theta),
-        )
-    if name == "fast":
-        bare = compiled.complex_conductance if dissipative else compiled.real_conductance
-        return bare, compiled.reflection_determinant
-    if name == "kwant":
-        from disorder_landscape.solver import kwant_reference
-
-        return (
-            partial(kwant_reference.bare_conductance, theta=theta),
-            partial(kwant_reference.reflection_determinant, theta=theta),
-        )
-    raise ArgumentError("solver", "be 'fast' or 'kwant'", f"it is {name!r}")
+SOLVERS = ("fast", "kwant")
+BELOW_GAP = 0.98
+"""Part of the gap up to which the thermal window is taken as rational in energy."""
+BLOCK_ENERGIES = {"fast": 2**18, "tilted": 2**14, "kwant": 2**8}
+"""Energies that are solved at a time: about 16 MB and one second."""
+BLOCK_SETS = {"fast": 2**12, "tilted": 2**5}
+"""Sets (wire, μ, B) that are averaged exactly at a time: one or two seconds."""
 
 
 def wires_of(wire: Nanowire | Sequence[Nanowire]) -> list[Nanowire]:
@@ -49,3 +36,106 @@ def wires_of(wire: Nanowire | Sequence[Nanowire]) -> list[Nanowire]:
     lengths = sorted({w.sites for w in wires})
     require(len(lengths) == 1, "wire", must, f"they have {lengths} sites")
     return wires
+
+
+def known_solver(name: str) -> str:
+    """Return the name if it is one of SOLVERS."""
+    if name not in SOLVERS:
+        raise ArgumentError("solver", "be 'fast' or 'kwant'", f"it is {name!r}")
+    return name
+
+
+def energies_at_once(solver: str, theta: float) -> int:
+    """Return how many energies are solved in about a second."""
+    return BLOCK_ENERGIES["tilted" if solver == "fast" and theta != 0 else solver]
+
+
+def sets_at_once(theta: float) -> int:
+    """Return how many sets (wire, μ, B) are averaged exactly in about a second."""
+    return BLOCK_SETS["tilted" if theta != 0 else "fast"]
+
+
+def bare_conductance(
+    wires: Sequence[Nanowire],
+    mu: FloatArray,
+    B: FloatArray,
+    omega: FloatArray,
+    theta: float,
+    solver: str = "fast",
+) -> FloatArray:
+    """Return the T = 0 conductances at ±ω, shape (wire, mu, B, omega, 2, 4), in e²/h."""
+    if solver == "fast":
+        return compiled.bare_conductance(wires, mu, B, omega, theta)
+    from disorder_landscape.solver import kwant_reference  # it takes a second to import
+
+    return kwant_reference.bare_conductance(wires, mu, B, omega, theta)
+
+
+def reflection_determinant(
+    wires: Sequence[Nanowire], mu: FloatArray, B: FloatArray, theta: float, solver: str = "fast"
+) -> FloatArray:
+    """Return det r at ω = 0 of both ends of wires without dissipation, (wire, lead, mu, B)."""
+    if solver == "fast":
+        return compiled.reflection_determinant(wires, mu, B, theta)
+    from disorder_landscape.solver import kwant_reference
+
+    return kwant_reference.reflection_determinant(wires, mu, B, theta)
+
+
+def thermal_average(
+    wires: Sequence[Nanowire],
+    mu: FloatArray,
+    B: FloatArray,
+    bias: FloatArray,
+    temperature: float,
+    theta: float = 0.0,
+) -> ThermalConductance:
+    """Return the exact thermal average, its estimated error and the number of energies it took.
+
+    Rational in energy and in closed form where the thermal window stays below the gap; by adaptive
+    quadrature where it does not or the wire has dissipation, and for the rare set of which no
+    rational model within the tolerance is found.
+    """
+    window = abs(bias).max() + compiled.core.REACH * BOLTZMANN * temperature
+    dissipative = any(w.dissipation > 0 for w in wires)
+    if dissipative or window > BELOW_GAP * min(w.delta0 for w in wires):
+        return thermal_quadrature(wires, mu, B, bias, temperature, theta=theta)
+    G, error, energies = closed_form(wires, mu, B, bias, temperature, theta)
+    for w, m, f in np.argwhere(~(error <= compiled.core.TOLERANCE)):
+        point = [wires[w]], mu[m : m + 1], B[f : f + 1]
+        one = thermal_quadrature(*point, bias, temperature, theta=theta)
+        G[w, m, f], error[w, m, f] = one.conductance[0, 0, 0], one.error[0, 0, 0]
+        energies[w, m, f] += one.energies[0, 0, 0]
+    return ThermalConductance(G, error, energies)
+
+
+def closed_form(
+    wires: Sequence[Nanowire],
+    mu: FloatArray,
+    B: FloatArray,
+    bias: FloatArray,
+    temperature: float,
+    theta: float,
+) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
+    """Return the average of a rational model, its error (infinite without one) and energies.
+
+    The window must stay below the gap, and the wires have no dissipation; shapes are those of
+    `thermal_average`.
+    """
+    if theta == 0:
+        return compiled.thermal_conductance(wires, mu, B, bias, temperature)
+    from disorder_landscape.solver import tilted_average
+
+    shape = len(wires), mu.size, B.size
+    G, error = np.empty((*shape, bias.size, 4)), np.empty(shape)
+    energies = np.empty(shape, dtype=np.int64)
+    for w, wire in enumerate(wires):
+        tilted = tilted_average.field_counts(wire, B, temperature)
+        for f in np.flatnonzero(tilted):
+            G[w, :, f], error[w, :, f], energies[w, :, f] = tilted_average.thermal_conductance(
+                wire, mu, B[f], bias, temperature, theta
+            )
+        for f in np.flatnonzero(~tilted):
+            straight = compiled.thermal_conductance([wire], mu, B[f : f + 1], bias, temperature)
+            G[w, :, f], error[w, :, f], energies[w, :, f] = (part[0, :, 0] for part in straight)
+    return G, error, energies

@@ -15,7 +15,6 @@ polynomial through Chebyshev nodes is averaged too, and compared with the truth 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import cache
 
 import numpy as np
@@ -62,46 +61,38 @@ WEIGHTS = np.array(
 """G_LL, G_RR, G_LR, G_RL as sums of the probabilities."""
 
 
+def field_counts(wire: Nanowire, B: FloatArray, temperature: float) -> NDArray[np.bool_]:
+    """Return in which fields it counts that they are tilted, shape (B,)."""
+    zeeman = max(wire.zeeman_per_tesla, wire.lead_zeeman_per_tesla) * abs(B)
+    return np.asarray(zeeman > TWOFOLD * BOLTZMANN * temperature)
+
+
 def thermal_conductance(
-    wires: Sequence[Nanowire],
-    mu: FloatArray,
-    B: FloatArray,
-    bias: FloatArray,
-    temperature: float,
-    theta: float,
+    wire: Nanowire, mu: FloatArray, B: float, bias: FloatArray, temperature: float, theta: float
 ) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
     """Return conductances, their estimated error and how many energies each set took.
 
-    As `compiled.thermal_conductance`, in a field at the angle θ.
+    As `compiled.thermal_conductance`, of one wire in one field, which counts, at the angle θ.
 
     Returns
     -------
-    G : array, shape (wire, mu, B, bias, 4)
+    G : array, shape (mu, bias, 4)
         G_LL, G_RR, G_LR, G_RL in e²/h.
-    error, energies : array, shape (wire, mu, B)
+    error, energies : array, shape (mu,)
     """
-    shape = len(wires), mu.size, B.size
-    G, error = np.empty((*shape, bias.size, 4)), np.full(shape, np.inf)
-    energies = np.zeros(shape, dtype=np.int64)
-    for w, f in np.ndindex(shape[0], shape[2]):
-        field, one = B[f : f + 1], [wires[w]]
-        zeeman = max(wires[w].zeeman_per_tesla, wires[w].lead_zeeman_per_tesla) * abs(B[f])
-        if zeeman <= TWOFOLD * BOLTZMANN * temperature:
-            straight = compiled.thermal_conductance(one, mu, field, bias, temperature)
-            G[w, :, f], error[w, :, f], energies[w, :, f] = (part[0, :, 0] for part in straight)
-            continue
-        average = _Average(wires[w], float(field[0]), bias, BOLTZMANN * temperature, theta)
-        for nodes in NODES:
-            missing = np.flatnonzero(~(error[w, :, f] <= TOLERANCE))
-            if missing.size:
-                energies[w, missing, f] += nodes + SMOOTH + CHECKS
-                with _controller().limit(
-                    limits=1, user_api="blas"
-                ):  # the matrices are too small to be shared
-                    found, estimate = average(mu[missing], nodes)
-                better = estimate < error[w, missing, f]
-                G[w, missing[better], f] = found[better]
-                error[w, missing[better], f] = estimate[better]
+    G, error = np.empty((mu.size, bias.size, 4)), np.full(mu.size, np.inf)
+    energies = np.zeros(mu.size, dtype=np.int64)
+    average = _Average(wire, B, bias, BOLTZMANN * temperature, theta)
+    for nodes in NODES:
+        missing = np.flatnonzero(~(error <= TOLERANCE))
+        if missing.size:
+            energies[missing] += nodes + SMOOTH + CHECKS
+            # the matrices are too small to be shared
+            with _controller().limit(limits=1, user_api="blas"):
+                found, estimate = average(mu[missing], nodes)
+            better = estimate < error[missing]
+            G[missing[better]] = found[better]
+            error[missing[better]] = estimate[better]
     return G, error, energies
 
 
@@ -127,8 +118,8 @@ class _Average:
         x = self.window * _nodes(nodes)
         z = x + 1j * HEIGHT * self.window / nodes
         wires, theta = [self.wire], self.theta
-        F = compiled.tilted_isolated_ends(wires, mu, self.B, z, theta)[0, 0]
-        bare = compiled.tilted_conductance(wires, mu, self.B, self.real, theta)[0, :, 0]
+        F = compiled.isolated_ends(wires, mu, self.B, z, theta)[0, 0]
+        bare = compiled.bare_conductance(wires, mu, self.B, self.real, theta)[0, :, 0]
         some = [self._of_set(z, F[m], bare[m]) for m in range(mu.size)]
         G, error = (np.array(part) for part in zip(*some, strict=True))
         return G, np.where(np.isfinite(G).all(axis=(1, 2)), error, np.inf)

@@ -43,7 +43,7 @@ def isolated_wire(z: ComplexArray, F: ComplexArray) -> tuple[FloatArray, FloatAr
     z : array, shape (node,)
         Energies with positive real and imaginary part in meV.
     F : array, shape (node, 8, 8)
-        The ends' Green's function there in 1/meV, of `compiled.tilted_isolated_ends`.
+        The ends' Green's function there in 1/meV, of `compiled.isolated_ends`.
 
     Returns
     -------
