@@ -103,10 +103,11 @@ sanitize: $(READY) ## run all fast tests of the core with bad accesses and overf
 wasm: $(READY) ## compile the core to WebAssembly, for a page without a server: build/wasm/nanowire.wasm
 	@sh scripts/wasm.sh build/wasm/nanowire.wasm
 
-lint: $(READY) ## check style and types
+lint: $(READY) ## check style, types, and that layers look down only
 	.venv/bin/ruff check .
 	.venv/bin/ruff format --check .
 	.venv/bin/mypy
+	.venv/bin/lint-imports --no-logo --no-cache
 
 lock: $(READY) ## resolve the versions of the requirements*.lock anew, from pyproject.toml
 	$(COMPILE) --extra dev -o requirements.lock pyproject.toml
