@@ -88,7 +88,8 @@ std::tuple<Array, Array, Array> as_arrays(const Tridiagonal& T, size_t sets) {
 // Of symmetric matrices, and rows that turn along.
 std::tuple<Array, Array, Array> tridiagonalise_sets(Squares A, Squares rows) {
     size_t sets = A.shape(0), n = A.shape(1);
-    Tridiagonal T{int(n)};
+    Tridiagonal T;
+    T.clear(int(n));
     for (size_t s = 0; s < sets; ++s) {
         Pencil pencil;
         pencil.rank = int(n), pencil.width = padded(int(n));
@@ -104,7 +105,8 @@ std::tuple<Array, Array, Array> tridiagonalise_sets(Squares A, Squares rows) {
 // What `tridiagonalise` gives, made diagonal.
 std::tuple<Array, Array, Array> diagonalise_sets(Matrix diagonal, Matrix off, Squares rows) {
     size_t sets = diagonal.shape(0), n = diagonal.shape(1);
-    Tridiagonal T{int(n)};
+    Tridiagonal T;
+    T.clear(int(n));
     for (size_t s = 0; s < sets; ++s)
         for (size_t k = 0; k < n; ++k) {
             T.diagonal[k].set(int(s), diagonal.data()[s * n + k]), T.off[k].set(int(s), off.data()[s * n + k]);

@@ -113,7 +113,8 @@ inline void complete_low_levels(double omega, const NodeData& at, LevelList& lev
 // the data make no model has none.
 inline void wire_levels(const double* omega, int nodes, const std::vector<const NodeData*>& sets, LevelList* out) {
     static thread_local Pencil pencil;
-    Tridiagonal T(8 * nodes);
+    static thread_local Tridiagonal T;
+    T.clear(8 * nodes);
     std::vector<int> rank;
     for (int s = 0; s < int(sets.size()); ++s) {
         pencil.make(omega, sets[s], nodes);
@@ -123,7 +124,7 @@ inline void wire_levels(const double* omega, int nodes, const std::vector<const 
     T.n = std::max(1, *std::max_element(rank.begin(), rank.end()));
     bool converged = diagonalise(T);
     for (int s = 0; s < int(sets.size()); ++s) {
-        out[s].clear();
+        out[s].clear(), out[s].reserve(rank[s]);
         if (!converged) continue;
         for (int k = 0; k < rank[s]; ++k) {
             double square = T.diagonal[k][s];

@@ -20,7 +20,9 @@ struct Tridiagonal {
     std::vector<std::array<Sets, 8>> rows;
 
     // Room for n; what no set fills are levels far away that the ends do not see.
-    explicit Tridiagonal(int n) : n(n), diagonal(n, Sets(1.0)), off(n, Sets(0.0)), rows(n) {
+    void clear(int size) {
+        n = size;
+        diagonal.assign(n, Sets(1.0)), off.assign(n, Sets(0.0)), rows.resize(n);
         for (auto& row : rows) row.fill(Sets(0.0));
     }
 };

@@ -5,6 +5,8 @@
 // (average.hpp).  A few further energies check the model; where it is off by more than the tolerance, M grows.
 #pragma once
 
+#include <span>
+
 #include "../conductance.hpp"
 #include "../poles/isolated.hpp"
 #include "average.hpp"
@@ -141,7 +143,8 @@ inline void solve_checks(const ThermalField& field, const EnergyPlan& plan, cons
 // Average up to SETS sets into out (wire, mu, B, bias, 4) and estimate (wire, mu, B).
 inline void average_sets(const Grid& grid, const EnergyPlan& plan, const SetIndex* sets, int count, double growth_limit,
                          double* out, double* estimate) {
-    std::vector<SetData> data(count);
+    static thread_local std::vector<SetData> room(SETS);
+    std::span<SetData> data(room.data(), count);
     for (SetData& of : data) of.isolated.resize(plan.nodes), of.bare.resize(plan.nodes + COMPARED), of.growth = 0.0;
     std::vector<ThermalField> fields;
     std::vector<int> starts;

@@ -18,13 +18,17 @@ namespace core {
 // pole is its own mirror image.  Up to a multiple of COLUMNS, terms of r = 0 follow.
 struct PoleTerms {
     int count;
-    std::vector<double> x, y, re[2][4], im[2][4];  // z = x + iy
+    Row values;
+    double *x, *y, *re[2][4], *im[2][4];  // z = x + iy
 
-    explicit PoleTerms(int count) : count(count), x(padded(count), 0.0), y(padded(count), -1.0) {
-        for (auto* parts : {&re, &im})
-            for (auto& charge : *parts)
-                for (auto& of : charge) of.resize(padded(count), 0.0);
+    explicit PoleTerms(int count) : count(count), values(18 * size_t(padded(count)), 0.0) {
+        double* next = values.data();
+        auto take = [&] { return std::exchange(next, next + padded(count)); };
+        x = take(), y = take();
+        for (int k = 0; k < 8; ++k) re[k / 4][k % 4] = take(), im[k / 4][k % 4] = take();
+        std::fill(y, y + padded(count), -1.0);
     }
+    PoleTerms(PoleTerms&&) = default;  // the numbers stay where they are
 };
 
 namespace detail {
