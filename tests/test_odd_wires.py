@@ -9,6 +9,9 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[1] / "claims"))  # as if run as a script
 
 import odd_wires
+from exact import exact_conductances
+
+from disorder_landscape.solver import compiled, kwant_reference
 
 
 def test_cases_are_drawn_from_their_index():
@@ -34,10 +37,34 @@ def test_the_search_goes_on_where_it_stopped_and_finds_nothing(tmp_path, capsys)
     assert after[1].startswith(before[1])
 
 
+@pytest.mark.parametrize("index", range(8))
+def test_the_solver_is_exact(index):
+    """In numbers of 600 bits, tilted wires and wires with dissipation among them."""
+    wire, mu, B, theta = odd_wires.any_case(20, index)
+    omega = np.array([0.3 * wire.delta0])
+    found = compiled.bare_conductance([wire], mu, B, omega, theta)[0, 0, 0, 0]
+    np.testing.assert_allclose(
+        found, exact_conductances(wire, mu[0], B[0], omega[0], theta), rtol=0, atol=1e-8
+    )
+
+
+@pytest.mark.parametrize("index", [12302, 3063, 6798])
+def test_the_solver_is_right_where_kwant_is_not(index):
+    """Kwant loses modes where a lead's energy is all but at a band edge."""
+    wire, mu, B, theta = odd_wires.any_case(7, index)
+    omega = np.array([1.2e-10 if index == 6798 else 0.0])
+    exact = exact_conductances(wire, mu[0], B[0], omega[0], theta)
+    found = compiled.bare_conductance([wire], mu, B, omega, theta)[0, 0, 0, 0]
+    of_kwant = kwant_reference.bare_conductance([wire], mu, B, omega, theta)[0, 0, 0, 0]
+    np.testing.assert_allclose(found, exact, rtol=0, atol=1e-12)
+    assert abs(of_kwant - exact).max() > 1e-3
+
+
 def test_what_is_wrong_fails():
-    wrong = {"index": 1, "error": 1e-3, "unknown": 0.0, "omega": 0.0}
-    assert not odd_wires.report([wrong], [])[1]
-    assert odd_wires.report([{**wrong, "unknown": 1e-4}], [])[1]
+    apart = {"index": 1, "error": 1e-3, "unknown": 0.0, "omega": 0.0}
+    assert not odd_wires.report([{**apart, "true error": 1e-3, "of Kwant": 0.0}], [])[1]
+    assert odd_wires.report([{**apart, "true error": 0.0, "of Kwant": 1e-3}], [])[1]
+    assert odd_wires.report([{**apart, "unknown": 1e-4}], [])[1]
     off = {"index": 2, "error": 1e-3, "estimate": 1e-5, "integral": 1e-7}
     text, passed = odd_wires.report([], [off])
     assert not passed

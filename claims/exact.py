@@ -1,22 +1,26 @@
-"""Exact conductances and determinants, in numbers of 600 bits: no rounding that anyone could see.
+"""Exact conductances at T = 0, in numbers of 600 bits: no rounding that anyone could see.
 
 Plain recursion over the sites with the leads attached, in the basis of
-`disorder_landscape.physics.hamiltonian`; the leads by decimation at ω + i 1e-50.
+`disorder_landscape.model.hamiltonian`; the leads by decimation at ω + i 1e-50.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 from flint import acb, acb_mat, arb, ctx
+
+from disorder_landscape import Nanowire
+from disorder_landscape.model.parameters import FloatArray
 
 ctx.prec = 600
 I = acb(0, 1)
 
 
 @dataclass
-class Exact:
+class _Point:
     """A wire at one point, all parameters exactly as the doubles say; any may be moved."""
 
     V: list[arb]  # with barriers
@@ -35,7 +39,15 @@ class Exact:
     sin: arb
 
 
-def exact(wire: Any, mu: float, B: float, omega: float, theta: float) -> Exact:
+def exact_conductances(
+    wire: Nanowire, mu: float, B: float, omega: float, theta: float
+) -> FloatArray:
+    """Return G_LL, G_RR, G_LR, G_RL at +ω, then at −ω, shape (2, 4), in e²/h."""
+    point = _point(wire, mu, B, omega, theta)
+    return np.array([float(G) for G in _conductances(point)]).reshape(2, 4)
+
+
+def _point(wire: Nanowire, mu: float, B: float, omega: float, theta: float) -> _Point:
     """Return the point of a Nanowire."""
     x = [
         wire.hopping,
@@ -54,10 +66,10 @@ def exact(wire: Any, mu: float, B: float, omega: float, theta: float) -> Exact:
     y[2], y[7] = y[2] * arb(float(B)), y[7] * arb(float(B))
     angle = arb(float(theta))
     V = [arb(float(v)) for v in wire.potential_with_barriers]
-    return Exact(V, *y, angle.cos(), angle.sin())
+    return _Point(V, *y, angle.cos(), angle.sin())
 
 
-def _onsite(p: Exact, kinetic: arb, zeeman: arb) -> acb_mat:
+def _onsite(p: _Point, kinetic: arb, zeeman: arb) -> acb_mat:
     """Return kinetic τz + V_Z (σx cos θ + σy sin θ)."""
     up = zeeman * (p.cos - I * p.sin)
     down = zeeman * (p.cos + I * p.sin)
@@ -78,7 +90,7 @@ def _one(z: Any) -> acb_mat:
     return acb_mat([[z if i == j else 0 for j in range(4)] for i in range(4)])
 
 
-def self_energies(p: Exact) -> tuple[acb_mat, acb_mat]:
+def _self_energies(p: _Point) -> tuple[acb_mat, acb_mat]:
     """Return Σ of the left and of the right lead."""
     h = _onsite(p, 2 * p.t - p.lead_mu, p.lead_zeeman)
     T = _hopping(p.t, p.lead_s)
@@ -95,9 +107,9 @@ def self_energies(p: Exact) -> tuple[acb_mat, acb_mat]:
     raise ArithmeticError("the leads do not converge")
 
 
-def ends(p: Exact) -> tuple[list[list[acb_mat]], tuple[acb_mat, acb_mat]]:
+def _ends(p: _Point) -> tuple[list[list[acb_mat]], tuple[acb_mat, acb_mat]]:
     """Return G between the end sites, [to][from], left first, and the leads' self-energies."""
-    sigma = self_energies(p)
+    sigma = _self_energies(p)
     root = acb(p.delta0**2 - p.omega**2).sqrt()
     if p.omega > p.delta0:
         root = -I * acb(p.omega**2 - p.delta0**2).sqrt()
@@ -128,9 +140,9 @@ def _dagger(M: acb_mat) -> acb_mat:
     return acb_mat([[x.conjugate() for x in row] for row in M.transpose().tolist()])
 
 
-def conductances(p: Exact) -> list[arb]:
+def _conductances(p: _Point) -> list[arb]:
     """Return G_LL, G_RR, G_LR, G_RL at +ω, then at −ω."""
-    G, sigma = ends(p)
+    G, sigma = _ends(p)
     gamma = [I * (s - _dagger(s)) for s in sigma]
     found: list[arb] = []
 
@@ -147,30 +159,3 @@ def conductances(p: Exact) -> list[arb]:
         for out, into in ((0, 1), (1, 0)):
             found.append(probability(out, into, c, c) - probability(out, into, 1 - c, c))
     return found
-
-
-def determinants(p: Exact) -> list[arb]:
-    """Return det r of the left and of the right end; ω must be 0."""
-    G, sigma = ends(p)
-    r = [I * (I * (sigma[i] - _dagger(sigma[i]))) * G[i][i] - _one(1) for i in range(2)]
-    return [matrix.det().real for matrix in r]
-
-
-def derivative(p: Exact, wire: Any, moved: str | int) -> list[float]:
-    """Return the derivatives of the conductances, by V of a site, "mu", "B" or "alpha"/2a."""
-    found = []
-    for h in (arb("1e-40"), arb("-1e-40")):
-        q = replace(p, V=list(p.V))
-        if moved == "mu":
-            q.mu += h
-        elif moved == "B":
-            q.zeeman += arb(wire.zeeman_per_tesla) * h
-            q.lead_zeeman += arb(wire.lead_zeeman_per_tesla) * h
-        elif moved == "alpha":
-            q.s += h
-            if wire.lead_alpha is None:
-                q.lead_s += h
-        else:
-            q.V[int(moved)] += h
-        found.append(conductances(q))
-    return [float(((a - b) / arb("2e-40")).mid()) for a, b in zip(*found, strict=True)]
