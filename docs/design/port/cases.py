@@ -41,7 +41,10 @@ class Case(NamedTuple):
 def case(kind: str, index: int) -> Case:
     """Draw a case: 7 or 9 points."""
     from disorder_landscape import Nanowire
-    from disorder_landscape.physics.disorder import disorder_realization
+    try:
+        from disorder_landscape.model.disorder import disorder_realization
+    except ImportError:  # the old code's room
+        from disorder_landscape.physics.disorder import disorder_realization
 
     rng = np.random.default_rng([33, list(KINDS).index(kind), index])
 

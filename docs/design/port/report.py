@@ -18,7 +18,7 @@ import numpy as np
 from cases import KINDS, Case, case
 from solve import PER_MEV
 
-from disorder_landscape.physics.quadrature import thermal_quadrature
+from disorder_landscape.solver.quadrature import thermal_quadrature
 
 CLOSE = 1e-11
 """Difference that is asked for where the algorithm is the same."""

@@ -35,7 +35,8 @@ GROWTH_LIMIT = 1e7
 
 def old_solvers(limit: float) -> dict[str, Callable[[Case], Any]]:
     """Return the Numba code's functions of a case."""
-    from disorder_landscape.physics import above_gap, fast_solver, finite_temperature, tilted_field
+    from disorder_landscape.physics import above_gap, fast_solver, finite_temperature, transport
+    from disorder_landscape.physics import tilted_average, tilted_field
 
     tilted_field.GROWTH_LIMIT = limit
     return {
@@ -45,20 +46,46 @@ def old_solvers(limit: float) -> dict[str, Callable[[Case], Any]]:
         "warm": lambda c: finite_temperature.thermal_conductance(
             [c.wire], c.mu, c.B, c.omega, c.temperature
         ),
+        "tilted": lambda c: tilted_field.bare_conductance(
+            [c.wire], c.mu, c.B, c.omega, c.theta, limit
+        ),
+        "det, tilted": lambda c: tilted_field.reflection_determinant(
+            [c.wire], c.mu, c.B, c.theta
+        ),
+        "warm, tilted": lambda c: tilted_average.thermal_conductance(
+            [c.wire], c.mu, c.B, c.omega, c.temperature, c.theta
+        ),
+        "average": lambda c: transport.exact_average(
+            [c.wire], c.mu, c.B, c.omega, c.temperature
+        ),
     }
 
 
 def new_solvers(limit: float) -> dict[str, Callable[[Case], Any]]:
     """Return the compiled core's."""
-    from disorder_landscape.solver import compiled
+    from disorder_landscape.solver import compiled, routes
+    from disorder_landscape.solver.compiled import core, handed_over
 
-    compiled.core.set_threads(1)
-    compiled.GROWTH_LIMIT = limit
+    core.set_threads(1)
     return {
-        "bare": lambda c: compiled.real_conductance([c.wire], c.mu, c.B, c.omega, limit),
-        "lossy": lambda c: compiled.complex_conductance([c.wire], c.mu, c.B, c.omega, limit),
-        "det": lambda c: compiled.reflection_determinant([c.wire], c.mu, c.B, limit),
+        "bare": lambda c: compiled.bare_conductance([c.wire], c.mu, c.B, c.omega, 0.0, limit),
+        "lossy": lambda c: core.internals.complex_conductance(
+            *handed_over([c.wire]), c.mu, c.B, c.omega, 0.0, limit
+        ),
+        "det": lambda c: compiled.reflection_determinant([c.wire], c.mu, c.B, 0.0, limit),
         "warm": lambda c: compiled.thermal_conductance([c.wire], c.mu, c.B, c.omega, c.temperature),
+        "tilted": lambda c: compiled.bare_conductance(
+            [c.wire], c.mu, c.B, c.omega, c.theta, limit
+        ),
+        "det, tilted": lambda c: compiled.reflection_determinant(
+            [c.wire], c.mu, c.B, c.theta, limit
+        ),
+        "warm, tilted": lambda c: routes.closed_form(
+            [c.wire], c.mu, c.B, c.omega, c.temperature, c.theta
+        ),
+        "average": lambda c: routes.thermal_average(
+            [c.wire], c.mu, c.B, c.omega, c.temperature
+        ),
     }
 
 
@@ -70,17 +97,12 @@ def solve(
     Derivatives come as (conductance, site … μ, B, α), those that are not to V as if to V.
     """
     from disorder_landscape import conductance_gradient
-    from disorder_landscape.physics import tilted_average, tilted_field, transport
-
-    arguments = [c.wire], c.mu, c.B
     error = np.zeros(c.mu.size)
     if "mK" in kind:
         if "quadrature" in kind:
-            G, error, _ = transport.exact_average(*arguments, c.omega, c.temperature)
+            G, error, _ = solvers["average"](c)
         elif "tilted" in kind:
-            G, error, _ = tilted_average.thermal_conductance(
-                *arguments, c.omega, c.temperature, c.theta
-            )
+            G, error, _ = solvers["warm, tilted"](c)
         else:
             G, error, _ = solvers["warm"](c)
         return G.reshape(c.mu.size, -1), error.ravel()
@@ -96,13 +118,10 @@ def solve(
         every = np.concatenate([V, others], axis=-1).reshape(4, points, -1).swapaxes(0, 1)
         return every.reshape(points, -1), np.zeros(points)
     if "det" in kind:
-        if c.theta == 0:
-            T = solvers["det"](c)
-        else:
-            T = tilted_field.reflection_determinant(*arguments, c.theta)
+        T = solvers["det" if c.theta == 0 else "det, tilted"](c)
         return T[0, :, :, 0].T, error
     if kind == "tilted":
-        G = tilted_field.bare_conductance(*arguments, c.omega, c.theta, limit)
+        G = solvers["tilted"](c)
     else:
         G = solvers["bare" if kind == "T = 0" else "lossy"](c)
     return G.reshape(-1, 8), np.zeros(c.mu.size * c.omega.size)
