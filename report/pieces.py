@@ -121,7 +121,7 @@ def document(name: str) -> Markdown:
     path = DOCS / f"{name}.md"
     require(path.exists(), "document", f"have a page '{path}'", "it has none")
     _, _, text = path.read_text("utf-8").partition("\n")
-    text = re.sub(r"\[([^]]*)\]\((?!#|https?:)[^)]*\)", r"\1", text)
+    text = re.sub(r"\[([^][]*)\]\((?!#|https?:)[^)]*\)", r"\1", text)
     return Markdown(re.sub(r"^## ", "### ", text.strip(), flags=re.MULTILINE))
 
 

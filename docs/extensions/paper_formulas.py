@@ -38,7 +38,9 @@ def table(source: str) -> str:
         if not of_test:
             used = {node.id for node in ast.walk(test) if isinstance(node, ast.Name)}
             of_test = [
-                name for c in used & set(constants) for name in _functions(constants[c], known)
+                name
+                for c in sorted(used & set(constants))
+                for name in _functions(constants[c], known)
             ]
         functions = ", ".join(map(_written, dict.fromkeys(of_test)))
         body.append(f"| {place[1]} | {_escaped(place[2])} | {functions} | `{test.name}` |")
