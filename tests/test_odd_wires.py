@@ -11,6 +11,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "claims"))  # as if run as a 
 import odd_wires
 from exact import exact_conductances
 
+from disorder_landscape import Nanowire
 from disorder_landscape.solver import compiled, kwant_reference
 
 
@@ -58,6 +59,36 @@ def test_the_solver_is_right_where_kwant_is_not(index):
     of_kwant = kwant_reference.bare_conductance([wire], mu, B, omega, theta)[0, 0, 0, 0]
     np.testing.assert_allclose(found, exact, rtol=0, atol=1e-12)
     assert abs(of_kwant - exact).max() > 1e-3
+
+
+@pytest.mark.parametrize(("index", "omega"), [(884, 1.2e-10), (3705, 6.847e-11), (5926, 1.2e-10)])
+def test_modes_of_tilted_leads_cross(index, omega):
+    """In 10 µT and less, at a band edge, leads of modes that λ cannot tell apart were left out."""
+    wire, mu, B, theta = odd_wires.any_case(7, index)
+    found = compiled.bare_conductance([wire], mu, B, np.array([omega]), theta)[0, 0, 0, 0]
+    exact = exact_conductances(wire, mu[0], B[0], omega, theta)
+    np.testing.assert_allclose(found, exact, rtol=0, atol=odd_wires.CLOSE)
+
+
+@pytest.mark.parametrize("B", np.geomspace(1e-14, 1e-3, 12))
+@pytest.mark.parametrize("energy", [0.0, 1e-12, 1e-8, 1e-4])
+def test_tilted_leads_at_a_band_edge(B, energy):
+    wire = Nanowire(np.array([0.3, -0.2]), lead_mu=0.0, barrier=(0.0, 0.0))
+    arguments = np.array([0.1]), np.array([B]), np.array([energy]), 0.7
+    found = compiled.bare_conductance([wire], *arguments)[0, 0, 0, 0]
+    exact = exact_conductances(wire, 0.1, B, energy, 0.7)
+    np.testing.assert_allclose(found, exact, rtol=0, atol=1e-7)
+
+
+@pytest.mark.parametrize(("B", "g"), [(4e-14, 35.0), (-0.2, 0.05), (0.6, 0.006), (0.1, 1.0)])
+def test_leads_at_the_crossing_of_their_spins(B, g):
+    """At μ_lead = 0 modes in and out meet at k = 0, but for V_Z: G_LL was off by 0.6."""
+    wire = Nanowire(np.random.default_rng(4).normal(0, 0.5, 30), lead_mu=0.0, lead_g=g, gamma=0.7)
+    for theta in (-1.4, 2.5):
+        arguments = np.array([0.2]), np.array([B]), np.zeros(1), theta
+        found = compiled.bare_conductance([wire], *arguments)[0, 0, 0, 0]
+        exact = exact_conductances(wire, 0.2, B, 0.0, theta)
+        np.testing.assert_allclose(found, exact, rtol=0, atol=1e-7)
 
 
 def test_what_is_wrong_fails():

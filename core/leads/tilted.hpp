@@ -10,6 +10,11 @@
 // self-energy is T F, F = U λ U⁻¹, T the hopping.  The mirror takes θ to −θ and that transposes, so
 // that the left lead's is σx Σᵀ σx, and holes are those of self_energy.hpp.
 //
+// Where modes of two spins cross, at λ = σ = ±1, two roots all but coincide, and λ cannot tell them apart.  With
+// λ = σ e^{iq}, e = E' + 2tσ, both are worked out in q, in which nothing small is a difference of what is not:
+//
+//     m = e − 4tσ sin² ½q,   w = v + 2sσ sin q,   q ≈ (−v ± √(e² − h²))/2sσ.
+//
 // Where spins are all but degenerate, the spinors lose all digits.  So F is only the start of Newton's
 // iteration for T F² − (E − H₀) F + T† = 0; and where V_Z is small, compared with what it takes to make
 // an outgoing mode meet an incoming one, the start is F without a field.
@@ -39,12 +44,16 @@ inline Spin2 inverse(const Spin2& A) {
 
 namespace detail {
 
+// |λ − σ| up to which two roots are worked out in q: itself, and as a part of that of the third.
+constexpr double NEARBY = 1e-2, NEARER = 0.1;
+constexpr double CLOSE = 1e-4;          // distance of modes up to which Newton's iteration would lose their digits
+constexpr double ACROSS = 1e-15;        // cos θ up to which it is rounding of that of ±π/2
+constexpr double REAL = 1e-6;           // |Im q| over the distance of both up to which they propagate
 constexpr double ON_THE_CIRCLE = 1e-7;  // how close to 1 |λ| is taken for that of a propagating mode
 // By up to this part of the distance between outgoing and incoming modes, of any spin, the field may move them
 // for the iteration to start without it.
 constexpr double SMALL = 0.02;
-// V_Z/t' up to which the field is left out where incoming and outgoing modes of two spins cross: there rounding
-// moves the modes, all but twofold roots, by as much.
+// V_Z/t' up to which the field is left out at the edge of a band, where a mode meets its own mirror image.
 constexpr double NEGLIGIBLE = 1e-8;
 constexpr int NEWTON_STEPS = 6;         // from 0.02 it takes four
 
@@ -116,35 +125,92 @@ inline Spin2 refined(Spin2 F, const Spin2& T, const Spin2& H) {
     return best;
 }
 
-// F of the modes that are outgoing to the right; shifted is E', along h and across v.
-inline Spin2 from_modes(double shifted, double t, double s, double along, double across) {
+// A mode's λ and what its spinor and its velocity follow from; q where it is known.
+struct TiltedMode {
+    Amplitude lambda, m, w, sin, cos;
+    bool crosses = false, propagates = false;
+};
+
+struct TiltedLead {
+    double low, high, t, s, along, across;  // E' + 2t and E' − 2t; h and v
+
+    TiltedMode mode_at(Amplitude lambda) const {
+        constexpr Amplitude I(0.0, 1.0);
+        Amplitude over = 1.0 / lambda, cos = (lambda + over) / 2.0, sin = (lambda - over) / (2.0 * I);
+        return {lambda, (low + high) / 2 + 2 * t * cos, across + 2 * s * sin, sin, cos, false, std::abs(std::abs(lambda) - 1) < ON_THE_CIRCLE};
+    }
+    TiltedMode mode_at(Amplitude q, double sigma) const {
+        Amplitude half = std::sin(0.5 * q), sin = sigma * std::sin(q);
+        double e = sigma > 0 ? low : high;
+        return {sigma * std::exp(Amplitude(-q.imag(), q.real())), e - 4 * t * sigma * half * half, across + 2 * s * sin, sin, sigma * std::cos(q), true, q.imag() == 0};
+    }
+
+    // The two modes that cross near σ, from where the bands are straight lines on, by Aberth's iteration.
+    void crossing(double sigma, TiltedMode (&modes)[2]) const {
+        constexpr int STEPS = 20;
+        double e = sigma > 0 ? low : high;
+        Amplitude root = std::sqrt(Amplitude((e - along) * (e + along))), q[2];
+        for (int k = 0; k < 2; ++k) q[k] = ((k == 0 ? root : -root) - across) / (2 * s * sigma);
+        for (int step = 0; step < STEPS; ++step) {
+            double moved = 0.0;
+            for (int k = 0; k < 2; ++k) {
+                TiltedMode at = mode_at(q[k], sigma);
+                Amplitude value = at.m * at.m - along * along - at.w * at.w;
+                Amplitude slope = -4.0 * t * at.m * at.sin - 4.0 * s * at.w * at.cos;
+                Amplitude newton = value / slope, change = newton / (1.0 - newton / (q[k] - q[1 - k]));
+                if (!std::isfinite(std::abs(change))) continue;
+                q[k] -= change;
+                moved = std::max(moved, std::abs(change));
+            }
+            if (moved <= 1e-16 * std::abs(q[0] - q[1])) break;
+        }
+        for (int k = 0; k < 2; ++k) {
+            if (std::abs(q[k].imag()) <= REAL * std::abs(q[0] - q[1])) q[k] = q[k].real();
+            modes[k] = mode_at(q[k], sigma);
+        }
+    }
+};
+
+// F of the modes that are outgoing to the right, and whether some cross.
+inline std::pair<Spin2, bool> from_modes(const TiltedLead& lead) {
     constexpr Amplitude I(0.0, 1.0);
-    double hop2 = t * t + s * s;
+    double t = lead.t, s = lead.s, shifted = (lead.low + lead.high) / 2, hop2 = t * t + s * s;
     Amplitude root[4];
-    find_roots(2.0 * Amplitude(t * shifted, s * across) / hop2,
-               (shifted * shifted + 2 * t * t - 2 * s * s - across * across - along * along) / hop2, root);
+    find_roots(2.0 * Amplitude(t * shifted, s * lead.across) / hop2,
+               (shifted * shifted + 2 * t * t - 2 * s * s - lead.across * lead.across - lead.along * lead.along) / hop2, root);
+    TiltedMode modes[4];
+    for (int k = 0; k < 4; ++k) modes[k] = lead.mode_at(root[k]);
+    bool crosses = false;
+    for (double sigma : {1.0, -1.0}) {
+        int near[4] = {0, 1, 2, 3};
+        auto away = [&](int k) { return std::abs(root[k] - sigma); };
+        std::sort(near, near + 4, [&](int a, int b) { return away(a) < away(b); });
+        if (!(away(near[1]) < NEARBY && away(near[1]) < NEARER * away(near[2]))) continue;
+        TiltedMode two[2];
+        lead.crossing(sigma, two);
+        for (int k = 0; k < 2; ++k) modes[near[k]] = two[k];
+        crosses = true;
+    }
     double inwards[4];
     Amplitude spinor[4][2];
     for (int k = 0; k < 4; ++k) {
-        Amplitude lambda = root[k], over = 1.0 / lambda;
-        Amplitude m = shifted + t * (lambda + over), w = across - I * s * (lambda - over);
+        const TiltedMode& at = modes[k];
         // of the columns of m + hσx + wσy the one that cannot vanish
-        Amplitude up = along + I * w, down = along - I * w;
+        Amplitude up = lead.along + I * at.w, down = lead.along - I * at.w;
         bool first = std::norm(up) > std::norm(down);
-        double size = std::sqrt(std::norm(m) + std::norm(first ? up : down));
-        spinor[k][0] = (first ? m : down) / size;
-        spinor[k][1] = (first ? up : m) / size;
-        double slope = m == 0.0 ? 0.0 : (w / m).real();
-        double velocity = 2 * t * lambda.imag() + 2 * s * slope * lambda.real();
-        bool propagates = std::abs(std::abs(lambda) - 1) < ON_THE_CIRCLE;
-        inwards[k] = propagates ? (velocity > 0 ? -1 : velocity < 0 ? 1 : 0) * ON_THE_CIRCLE : std::log(std::abs(lambda));
+        double size = std::sqrt(std::norm(at.m) + std::norm(first ? up : down));
+        spinor[k][0] = (first ? at.m : down) / size;
+        spinor[k][1] = (first ? up : at.m) / size;
+        double slope = at.m == 0.0 ? 0.0 : (at.w / at.m).real();
+        double velocity = 2 * t * at.sin.real() + 2 * s * slope * at.cos.real();
+        inwards[k] = at.propagates ? (velocity > 0 ? -1 : velocity < 0 ? 1 : 0) * ON_THE_CIRCLE : std::log(std::abs(at.lambda));
     }
     int mode[4] = {0, 1, 2, 3};
     std::sort(mode, mode + 4, [&](int a, int b) { return inwards[a] < inwards[b]; });
     int a = mode[0], b = mode[1];
     Spin2 U{{{spinor[a][0], spinor[b][0]}, {spinor[a][1], spinor[b][1]}}};
-    Spin2 shift{{{root[a], 0.0}, {0.0, root[b]}}};
-    return U * shift * inverse(U);
+    Spin2 shift{{{modes[a].lambda, 0.0}, {0.0, modes[b].lambda}}};
+    return {U * shift * inverse(U), crosses};
 }
 
 // The right lead's electron block at energy E, in meV.
@@ -156,18 +222,29 @@ inline Spin2 tilted_electron_self_energy(double E, const LeadParameters& lead, d
         Amplitude same = straight(0, 0), turned = straight(0, 1);
         return {{{same, turned * Amplitude(cos, -sin)}, {turned * Amplitude(cos, sin), same}}};
     }
-    double shifted = E - 2 * t + lead.mu, hop = std::hypot(t, s), zeeman = std::abs(lead.zeeman);
+    double low = E + lead.mu, shifted = low - 2 * t, hop = std::hypot(t, s), zeeman = std::abs(lead.zeeman);
+    Spin2 T{{{-t, -s}, {s, -t}}};
+    if (std::abs(along) <= ACROSS * zeeman) {  // the field is along the spin–orbit field: two chains, of σy = ±1
+        Amplitude F[2];
+        for (int k = 0; k < 2; ++k) {
+            double own = low - (k == 0 ? across : -across);
+            Amplitude turn(t / hop, (k == 0 ? -s : s) / hop);
+            F[k] = turn * outgoing((own + 2 * (hop - t)) / (2 * hop), (4 * t - own + 2 * (hop - t)) / (2 * hop), true).lambda;
+        }
+        Amplitude same = 0.5 * (F[0] + F[1]), differ = Amplitude(0.0, 0.5) * (F[0] - F[1]);  // F₊(1 + σy)/2 + F₋(1 − σy)/2
+        return T * Spin2{{{same, -differ}, {differ, same}}};
+    }
     Amplitude cosine = -shifted / (2 * hop);  // of k without field, but for ±atan(s/t)
     Amplitude sine = std::sqrt(1.0 - cosine * cosine);
-    double apart = std::min({std::abs(sine), std::abs(sine * t + cosine * s) / hop, std::abs(sine * t - cosine * s) / hop});
-    bool small = zeeman < 4 * SMALL * hop * std::abs(sine) * apart, lost = !small && zeeman < NEGLIGIBLE * hop;
+    double edge = std::abs(sine), cross = std::min(std::abs(sine * t + cosine * s), std::abs(sine * t - cosine * s)) / hop;
     LeadParameters free = lead;
     free.zeeman = 0;
-    if (lost) return electron_self_energy(E, free);
-    Spin2 T{{{-t, -s}, {s, -t}}};
-    Spin2 F = small ? inverse(T) * electron_self_energy(E, free) : from_modes(shifted, t, s, along, across);
     Spin2 H{{{-shifted, Amplitude(along, -across)}, {Amplitude(along, across), -shifted}}};
-    return T * refined(F, T, H);
+    if (cross > CLOSE && zeeman < 4 * SMALL * hop * edge * std::min(edge, cross))
+        return T * refined(inverse(T) * electron_self_energy(E, free), T, H);
+    if (zeeman < NEGLIGIBLE * hop && edge < cross) return electron_self_energy(E, free);
+    auto [F, crosses] = from_modes({low, low - 4 * t, t, s, along, across});
+    return T * (crosses ? F : refined(F, T, H));
 }
 
 }  // namespace detail

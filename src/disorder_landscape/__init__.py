@@ -11,6 +11,7 @@ from disorder_landscape.model.parameters import Nanowire
 from disorder_landscape.observables.conductance import conductance
 from disorder_landscape.observables.gradient import conductance_gradient
 from disorder_landscape.observables.visibility import topological_visibility
+from disorder_landscape.parts import MissingPartError, needs
 
 if TYPE_CHECKING:
     from disorder_landscape.inference.infer import infer
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ArgumentError",
+    "MissingPartError",
     "Nanowire",
     "conductance",
     "conductance_gradient",
@@ -30,17 +32,17 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """Import what needs scikit-learn or pydantic only when it is asked for."""
+    """Import what the simulator does not need, and may lack, only when it is asked for."""
     if name == "infer":
-        from disorder_landscape.inference.infer import infer
-
+        with needs("inference"):
+            from disorder_landscape.inference.infer import infer
         return infer
     if name == "predict":
-        from disorder_landscape.learning.prediction import predict
-
+        with needs("learning"):
+            from disorder_landscape.learning.prediction import predict
         return predict
     if name == "verify":
-        from disorder_landscape.inference.verification import verify
-
+        with needs("inference"):
+            from disorder_landscape.inference.verification import verify
         return verify
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

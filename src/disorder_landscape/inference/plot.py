@@ -14,6 +14,7 @@ from disorder_landscape.inference.report import alpha_with_deviation, error_bar
 from disorder_landscape.inference.verdict import CONVERGED
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.model.quantities import CONDUCTANCES
+from disorder_landscape.parts import needs
 
 FIGURE_SIZE = 7.06, 7.2
 """In inches; the width is that of a page of the paper's journal."""
@@ -23,6 +24,7 @@ APART = np.array([-0.25, 0.25])
 """Where the pixels of a map are that has one value of µ or B alone."""
 
 
+@needs("figures")
 def plot_inference(result: xr.Dataset, measurement: Measurement, path: Path) -> None:
     """Draw V and how sure it is, components, misfits, G measured and explained, P(topological).
 

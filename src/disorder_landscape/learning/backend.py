@@ -11,6 +11,8 @@ from importlib import import_module
 from tempfile import TemporaryFile
 from typing import Any
 
+from disorder_landscape.parts import needs
+
 
 @cache
 def import_keras() -> Any:
@@ -20,7 +22,7 @@ def import_keras() -> Any:
     this. The environment variable KERAS_BACKEND chooses another backend.
     """
     os.environ.setdefault("TF_CPP_MIN_LOG_LEVEL", "2")  # no notes on devices when it first computes
-    with _stderr_unless_it_fails():
+    with needs("learning"), _stderr_unless_it_fails():
         keras = import_module("keras")
         if keras.backend.backend() == "tensorflow":
             import_module("tensorflow").config.experimental.enable_op_determinism()

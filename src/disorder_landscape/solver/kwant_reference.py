@@ -11,8 +11,10 @@ import numpy as np
 from disorder_landscape.model import hamiltonian as h
 from disorder_landscape.model.hamiltonian import ComplexArray
 from disorder_landscape.model.parameters import FloatArray, Nanowire
+from disorder_landscape.parts import needs
 
-with warnings.catch_warnings():  # without MUMPS Kwant warns; for a chain SciPy's solver is as good
+with needs("kwant"), warnings.catch_warnings():
+    # Without MUMPS Kwant warns; for a chain SciPy's solver is as good.
     warnings.simplefilter("ignore", RuntimeWarning)
     import kwant
 
