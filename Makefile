@@ -30,7 +30,7 @@ COMPILE := .venv/bin/uv pip compile --universal --python-version 3.11 --generate
 STARTED := $(shell date +%s)
 
 .PHONY: help setup generate train evaluate figures $(FIGURES) bench accuracy odd-wires study
-.PHONY: inversion-study claims claims-table report test sanitize wasm lint lock clean
+.PHONY: inversion-study claims claims-table report docs test sanitize wasm lint lock clean
 .SUFFIXES:
 # One after the other: each command uses all cores by itself.
 .NOTPARALLEL:
@@ -87,11 +87,15 @@ inversion-study: $(READY) ## invert fresh wires, judge errors and error bars, ta
 claims: $(READY) ## check the paper's claims: measure again what is quick, table into build/claims.md
 	$(VENV_PYTHON) -m disorder_landscape.claims $(addprefix --only ,$(ONLY)) $(if $(STORE),--store)
 
-claims-table: $(READY) ## write the README's table of claims from the stored results
-	$(VENV_PYTHON) -m disorder_landscape.claims --write-readme
+claims-table: $(READY) ## write the tables of README.md and docs from the stored results
+	$(VENV_PYTHON) -m disorder_landscape.claims --write-pages
 
 report: $(READY) ## claims, figures (those in build/figures) and conventions on one page, build/report.html
 	$(VENV_PYTHON) report/build.py
+
+docs: $(READY) ## build the documentation from docs, into build/docs/index.html
+	.venv/bin/sphinx-build -W --keep-going --quiet -d build/docs-cache docs build/docs
+	@echo "make docs: build/docs/index.html"
 
 test: $(READY) ## run the tests
 	$(VENV_PYTHON) -m pytest -n 2 --dist worksteal

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 
-from disorder_landscape.arguments import ArgumentError
+from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.claim import Stored, load_claims
 from disorder_landscape.claims.findings import Finding, Outcome, stored_findings
@@ -20,7 +20,7 @@ from disorder_landscape.dataset.store import read_dataset
 
 FIGURES = REPOSITORY / "build" / "figures"
 SCRIPTS = REPOSITORY / "paper_figures"
-README = REPOSITORY / "README.md"
+DOCS = REPOSITORY / "docs"
 WIDTH_PER_DOT = 0.45
 """Pixels of the page per dot of a picture: a figure of full width, 2118 dots, takes 953."""
 
@@ -52,7 +52,7 @@ def claims_summary() -> Markdown:
 
 
 def claims_table() -> Html:
-    """Return the table of claims, as in the README."""
+    """Return the table of claims, as in docs/claims.md."""
     found = stored_findings(load_claims())
     table = rows(found)
     classes = [one.verdict.replace(" ", "-") for one in found]
@@ -110,19 +110,19 @@ def drawn_figures(folder: Path = FIGURES) -> Html:
     return Html(found + note)
 
 
-def readme_section(title: str) -> Markdown:
-    """Return what the README says under a heading, without the heading.
+def document(name: str) -> Markdown:
+    """Return a page of the documentation, without its title and without links to other pages.
 
     Raises
     ------
     ArgumentError
-        If it has no such heading.
+        If there is no such page.
     """
-    pattern = rf"^## {re.escape(title)}\n(.*?)(?=^## |\Z)"
-    section = re.search(pattern, README.read_text("utf-8"), re.MULTILINE | re.DOTALL)
-    if section is None:
-        raise ArgumentError("README", f"have a section '{title}'", "it has none")
-    return Markdown(section[1].strip())
+    path = DOCS / f"{name}.md"
+    require(path.exists(), "document", f"have a page '{path}'", "it has none")
+    _, _, text = path.read_text("utf-8").partition("\n")
+    text = re.sub(r"\[([^][]*)\]\((?!#|https?:)[^)]*\)", r"\1", text)
+    return Markdown(re.sub(r"^## ", "### ", text.strip(), flags=re.MULTILINE))
 
 
 def _figure(script: Path, folder: Path, minutes: dict[str, str]) -> str:
@@ -149,10 +149,10 @@ def _paragraphs(text: str) -> str:
 
 
 def _minutes() -> dict[str, str]:
-    """Return the minutes of each figure's script, from the README's table of figures."""
+    """Return the minutes of each figure's script, from the table in docs/reproduce.md."""
     rows_of_table = re.findall(
         r"^\|[^|]*\| *`(figure_[^`]*\.py)` *\|.*\| *([\d.]+) *\|$",
-        README.read_text("utf-8"),
+        (DOCS / "reproduce.md").read_text("utf-8"),
         re.MULTILINE,
     )
     return dict(rows_of_table)

@@ -17,7 +17,7 @@
 # leaves open.
 #
 # [Claims](#claims) · [Figures](#figures) · [Inversion](#inversion) ·
-# [Conventions](#conventions) ·
+# [Studies](#studies) · [Conventions](#conventions) ·
 # [Limitations](#limitations) · [Do it yourself](#again)
 
 # %%
@@ -25,8 +25,8 @@
 from pieces import (
     claims_summary,
     claims_table,
+    document,
     drawn_figures,
-    readme_section,
     stored_results,
 )
 
@@ -57,19 +57,28 @@ drawn_figures()
 # <h2 id="inversion">Beyond the paper: from a measurement to the disorder, with error bars</h2>
 
 # %%
-readme_section("What is the disorder in this wire?")
+document("infer")
+
+# %%
+document("inversion")
+
+# %% [markdown]
+# <h2 id="studies">Studies</h2>
+
+# %%
+document("studies")
 
 # %% [markdown]
 # <h2 id="conventions">Conventions</h2>
 
 # %%
-readme_section("Conventions")
+document("conventions")
 
 # %% [markdown]
 # <h2 id="limitations">Limitations</h2>
 
 # %%
-readme_section("Limitations")
+document("limits")
 
 # %% [markdown]
 # <h2 id="again">Do it yourself</h2>
@@ -80,6 +89,6 @@ readme_section("Limitations")
 # - `make claims` measures again what is quick and checks the rest against stored results;
 # - `make report` writes this page.
 #
-# `README.md` tells the rest: the simulator, the command line, the layout. The claims stand in
+# `make docs` builds the documentation, which tells the rest. The claims stand in
 # `claims/claims.toml`, the studies and their results in `claims/`, the figures' scripts in
 # `paper_figures/`, this page's source in `report/`.

@@ -19,7 +19,7 @@ from disorder_landscape.claims import (
     measurements,
     measurements_of_models,
     measurements_of_wires,
-    readme,
+    pages,
     table,
 )
 from disorder_landscape.claims.claim import Claim, ResultMissingError, load_claims
@@ -59,12 +59,23 @@ def study(tmp_path):
     return write
 
 
-# ---- claims.toml and the README -----------------------------------------------------------------
+# ---- claims.toml and the documents --------------------------------------------------------------
 
 
-def test_the_readme_says_what_the_claims_and_their_results_say():
-    text = readme.README.read_text("utf-8")
-    assert readme.written(text) == text, "run `make claims-table`"
+@pytest.mark.parametrize("page", pages.PAGES)
+def test_a_document_says_what_the_claims_and_their_results_say(page):
+    text = (REPOSITORY / page).read_text("utf-8")
+    assert pages.written(page, text) == text, "run `make claims-table`"
+
+
+def test_only_documents_that_change_are_written(tmp_path):
+    for page in pages.PAGES:
+        (tmp_path / page).parent.mkdir(exist_ok=True)
+        (tmp_path / page).write_text((REPOSITORY / page).read_text("utf-8"), "utf-8")
+    damaged = pages.Section("claims").replaced((tmp_path / "docs/claims.md").read_text(), "old")
+    (tmp_path / "docs/claims.md").write_text(damaged, "utf-8")
+    assert pages.write_pages(tmp_path) == ["docs/claims.md"]
+    assert pages.write_pages(tmp_path) == []
 
 
 def test_every_verdict_that_is_not_reproduced_has_a_reason():
@@ -459,11 +470,11 @@ def test_help_has_a_worked_example(capsys):
     assert "example: python -m disorder_landscape.claims --only" in capsys.readouterr().out
 
 
-# ---- the README's marks and the print of numbers ------------------------------------------------
+# ---- the marks and the print of numbers ---------------------------------------------------------
 
 
 def test_a_section_is_replaced_and_nothing_else():
-    section = readme.Section("claims")
+    section = pages.Section("claims")
     before = f"a\n{section.begin}\nold\n{section.end}\nz\n"
     new = section.replaced(before, "new")
     assert new == f"a\n{section.begin}\n\nnew\n{section.end}\nz\n"

@@ -89,7 +89,7 @@ def test_the_page_holds_claims_figures_and_conventions(page):
     assert page.count('width="450"') == 2
     assert pictures == [PNG + b"figure_3", PNG + b"figure_S9"]
     text = re.sub(r"<[^>]*>", "", page)
-    assert "301 sites, or barriers on sites of their own" in text  # of the README
+    assert "301 sites, or barriers on sites of their own" in text  # of docs/conventions.md
     assert "viewport" in page
 
 
@@ -129,6 +129,6 @@ def test_without_a_figure_it_is_one_sentence_and_nothing_is_written(monkeypatch,
     assert not list(tmp_path.iterdir())
 
 
-def test_a_section_that_the_readme_lacks_is_refused():
-    with pytest.raises(ArgumentError, match="a section 'Nonesuch'"):
-        pieces.readme_section("Nonesuch")
+def test_a_page_that_the_docs_lack_is_refused():
+    with pytest.raises(ArgumentError, match=r"a page '.*nonesuch\.md'"):
+        pieces.document("nonesuch")

@@ -1,4 +1,4 @@
-"""Inversions of short wires whose disorder is known, and of the fixed wire of the README."""
+"""Inversions of short wires whose disorder is known, and of the fixed wire of docs/infer.md."""
 
 import json
 from dataclasses import replace

@@ -37,7 +37,7 @@ def test_the_default_spacing_has_the_stated_error():
 
 @pytest.mark.slow
 def test_the_table_of_errors():
-    """The README's table: pytest -m slow -s tests/observables/test_energy_grid.py."""
+    """The table of docs/accuracy.md: pytest -m slow -s tests/observables/test_energy_grid.py."""
     spacings = [1.77e-3, 1e-3, 0.5e-3, 0.25e-3, 0.1e-3, 0.03e-3]
     error = errors(wires=40, points=6, spacings=spacings)
     rms = np.sqrt((error**2).mean(axis=tuple(range(1, error.ndim))))

@@ -21,7 +21,7 @@ from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.claim import Claim, claim_of, load_claims
 from disorder_landscape.claims.findings import Finding, stored_findings, with_measured
-from disorder_landscape.claims.readme import write_readme
+from disorder_landscape.claims.pages import PAGES, write_pages
 from disorder_landscape.claims.sources import store
 from disorder_landscape.claims.table import (
     COLUMNS,
@@ -46,8 +46,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line; exit with 1 for a disagreement, 2 for what cannot be used."""
     options = _parse(arguments)
     try:
-        if options.write_readme:
-            print("README.md: " + ("written" if write_readme() else "is as it should be"))
+        if options.write_pages:
+            changed = write_pages()
+            for page in PAGES:
+                print(f"{page}: " + ("written" if page in changed else "is as it should be"))
             return
         claims = load_claims()
         chosen = tuple(claim_of(name, claims) for name in options.only) or claims
@@ -143,9 +145,9 @@ def _parse(arguments: Sequence[str] | None) -> argparse.Namespace:
         help="keep what has been measured in claims/measured.json, as the stored values",
     )
     parser.add_argument(
-        "--write-readme",
+        "--write-pages",
         action="store_true",
-        help="write the README's table from what is stored, and do nothing else",
+        help="write the tables of README.md and docs from what is stored, and do nothing else",
     )
     parser.add_argument(
         "--output",

@@ -1,7 +1,8 @@
-"""The README's tables of claims and of studies, written between marks from stored results."""
+"""What documents say of claims and studies, written between marks from stored results."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,12 +20,10 @@ from disorder_landscape.claims.inversions import (
 from disorder_landscape.claims.table import COLUMNS, markdown, rows, tally
 from disorder_landscape.files import replacing
 
-README = REPOSITORY / "README.md"
-
 
 @dataclass(frozen=True)
 class Section:
-    """A part of the README that stands between two marks of its own."""
+    """A part of a document that stands between two marks of its own."""
 
     name: str
 
@@ -39,7 +38,7 @@ class Section:
         return f"<!-- end of the {self.name} -->"
 
     def replaced(self, text: str, content: str) -> str:
-        """Return a README's text with this content in place of the section's.
+        """Return a document's text with this content in place of the section's.
 
         Raises
         ------
@@ -49,39 +48,54 @@ class Section:
         must = f"have each of the two marks of the {self.name} once"
         once = text.count(self.begin) == text.count(self.end) == 1
         in_order = once and text.index(self.begin) < text.index(self.end)
-        require(in_order, "README", must, "it has not")
+        require(in_order, "document", must, "it has not")
         before, rest = text.split(self.begin)
         after = rest.split(self.end)[1]
         return f"{before}{self.begin}\n\n{content}\n{self.end}{after}"
 
 
-def claims_content() -> str:
-    """Return the tally and the table of all claims."""
+def claims_tally() -> str:
+    """Return how many claims have which verdict."""
     findings = stored_findings(load_claims())
-    return f"{len(findings)} claims: {tally(findings)}.\n\n{markdown(COLUMNS, rows(findings))}"
+    return f"{len(findings)} claims: {tally(findings)}.\n"
 
 
-def written(text: str) -> str:
-    """Return a README's text with all sections as the stored results have them."""
-    contents = {
-        "claims": claims_content,
+def claims_table() -> str:
+    """Return the tally and the table of all claims."""
+    table = rows(stored_findings(load_claims()))
+    return f"{claims_tally()}\n{markdown(COLUMNS, table)}"
+
+
+PAGES: dict[str, dict[str, Callable[[], str]]] = {
+    "README.md": {"tally": claims_tally},
+    "docs/claims.md": {"claims": claims_table},
+    "docs/studies.md": {
         "components": components_table,
         "conventions": conventions_table,
         "inversions": accuracy_table,
         "uniqueness": uniqueness_table,
         "unmodelled": unmodelled_table,
-    }
-    for name, content in contents.items():
+    },
+}
+"""Documents, and what makes the content of each of their sections."""
+
+
+def written(page: str, text: str) -> str:
+    """Return a document's text with all its sections as the stored results have them."""
+    for name, content in PAGES[page].items():
         text = Section(name).replaced(text, content())
     return text
 
 
-def write_readme(path: Path = README) -> bool:
-    """Write the tables into the README; return whether it has changed."""
-    text = path.read_text("utf-8")
-    new = written(text)
-    if new == text:
-        return False
-    with replacing(path) as temporary:
-        temporary.write_text(new, "utf-8")
-    return True
+def write_pages(repository: Path = REPOSITORY) -> list[str]:
+    """Write the sections of all documents; return the documents that have changed."""
+    changed = []
+    for page in PAGES:
+        path = repository / page
+        text = path.read_text("utf-8")
+        new = written(page, text)
+        if new != text:
+            with replacing(path) as temporary:
+                temporary.write_text(new, "utf-8")
+            changed.append(page)
+    return changed

@@ -1,0 +1,52 @@
+"""The documentation: its table of formulas, and the README that leads to it."""
+
+from __future__ import annotations
+
+import re
+import sys
+
+from disorder_landscape.chain import REPOSITORY
+
+sys.path.insert(0, str(REPOSITORY / "docs" / "extensions"))  # as docs/conf.py does
+
+import paper_formulas
+
+README = (REPOSITORY / "README.md").read_text("utf-8")
+
+
+def test_every_stated_formula_has_a_function_and_a_test():
+    source = paper_formulas.TESTS.read_text("utf-8")
+    stated = re.findall(r'def (test_\w+)\(.*\):\n    """(?:Eq\. |S-)', source)
+    rows = paper_formulas.table(source).splitlines()[2:]
+    cells = [[cell.strip() for cell in re.split(r"(?<!\\)\|", row)[1:-1]] for row in rows]
+    assert [test for *_, test in cells] == [f"`{name}`" for name in stated]
+    assert all(place and formula and function for place, formula, function, _ in cells)
+
+
+def test_a_function_is_what_the_test_calls_of_the_package():
+    table = paper_formulas.table(
+        "import numpy as np\n"
+        "from disorder_landscape import Nanowire, conductance\n"
+        "from disorder_landscape.model import disorder\n"
+        "WIRE = Nanowire(np.zeros(3))\n"
+        'def test_a():\n    """Eq. S1: a*b."""\n    disorder.kernel(np.zeros(2))\n'
+        'def test_b():\n    """S-I: c."""\n    conductance(Nanowire(np.zeros(3)), 0, 0)\n'
+        'def test_c():\n    """S-II.1: d."""\n    WIRE.mass\n'
+        'def test_d():\n    """Something else."""\n    WIRE.mass\n'
+    )
+    assert table.splitlines()[2:] == [
+        r"| Eq. S1 | a\*b. | `model.disorder.kernel` | `test_a` |",
+        "| S-I | c. | {py:obj}`~disorder_landscape.conductance` | `test_b` |",
+        "| S-II.1 | d. | {py:obj}`~disorder_landscape.Nanowire` | `test_c` |",
+    ]
+
+
+def test_the_readme_is_one_page():
+    assert len(README.splitlines()) <= 120
+    assert len(README.split()) <= 900
+
+
+def test_links_of_the_readme_lead_to_files():
+    links = [link for link in re.findall(r"\]\(([^)]*)\)", README) if "://" not in link]
+    assert links
+    assert [link for link in links if not (REPOSITORY / link).is_file()] == []
