@@ -96,13 +96,13 @@ inline void set_ends(Ends& G, int lane, const EndMatrix& one) {
         for (int j = Ends::SYMMETRIC ? i : 0; j < 8; ++j) G(i, j).re.set(lane, one(i, j).real()), G(i, j).im.set(lane, one(i, j).imag());
 }
 
-// Whether a lane's G is a number: where leads are closed, a level of the whole at ω makes it none.
-template <class Ends>
-inline bool is_number(const Ends& G, int lane) {
-    double total = 0.0;
+// In each lane a number only if all of G is: where leads are closed, a level of the whole at ω makes it none.
+template <class R, class Ends>
+inline R sum_of_entries(const Ends& G) {
+    R total = 0.0;
     for (int i = 0; i < 8; ++i)
-        for (int j = 0; j < 8; ++j) total += G(i, j).re[lane] + G(i, j).im[lane];
-    return std::isfinite(total);
+        for (int j = Ends::SYMMETRIC ? i : 0; j < 8; ++j) total = total + G(i, j).re + G(i, j).im;
+    return total;
 }
 
 // G and the leads of LANES pairs (μ, ω) from `first` on, those that lost digits solved by pivoting.
@@ -121,8 +121,9 @@ inline void solve_pairs(const Grid& grid, const FieldOf<A>& field, int first, do
     auto ends = eliminate_inner_sites<typename A::N, typename A::Block>(view(field.wire), terms);
     auto G = attach_leads(ends, leads);
     int count = std::min(A::LANES, pairs - first);
+    auto sum = sum_of_entries<typename A::R>(G);
     for (int l = 0; l < count; ++l)
-        if (!(ends.growth[l] < growth_limit) || !is_number(G, l)) {
+        if (!(ends.growth[l] < growth_limit) || !std::isfinite(sum[l])) {
             int e = (first + l) % energies;
             ComplexTerms one = A::one(kinetic(first + l), field.pairing[e], field.hop);
             set_ends(G, l, pivoted_ends(field.wire, one, on_the_ends(field.leads[e])));

@@ -173,15 +173,18 @@ CORE_INLINE EndBlocks<N, Block> first_two_sites(const Block& first, const Block&
     return s;
 }
 
-// Turn the last of the sites back from (−τz)ⁿ.
-template <class Block, class Coupling>
-CORE_INLINE void turn_back(int sites, Block& D, Coupling& C) {
+// Turn the last of the sites back from (−τz)ⁿ: its own block, and what couples it to the first.
+template <class Block>
+CORE_INLINE void turn_back_onsite(int sites, Block& D) {
     if (sites % 2 == 1) return;
-    for (int i = 0; i < 4; ++i) {
-        C(i, 0) = -C(i, 0), C(i, 1) = -C(i, 1);
+    for (int i = 0; i < 4; ++i)
         for (int j = 0; j <= (Block::MIRRORED ? i : 3); ++j)
             if ((i < 2) != (j < 2)) D(i, j) = -D(i, j);
-    }
+}
+template <class N>
+CORE_INLINE void turn_back_coupling(int sites, Block4<N>& C) {
+    if (sites % 2 == 1) return;
+    for (int i = 0; i < 4; ++i) C(i, 0) = -C(i, 0), C(i, 1) = -C(i, 1);
 }
 
 // The terms of even sites, then of odd ones.
@@ -213,11 +216,8 @@ inline EndBlocks<N, Block> eliminate_inner_sites(const WireView& wire, const Ter
         eliminate_site(s, A(n));
         look_at_coupling(s, n, wire.sites, before);
     }
-    turn_back(wire.sites, s.D, s.C);
-    if constexpr (!Block::MIRRORED) {
-        Block unchanged = s.D;
-        turn_back(wire.sites, unchanged, s.F_transposed);
-    }
+    turn_back_onsite(wire.sites, s.D), turn_back_coupling(wire.sites, s.C);
+    if constexpr (!Block::MIRRORED) turn_back_coupling(wire.sites, s.F_transposed);
     return s;
 }
 

@@ -76,8 +76,8 @@ inline EndBlocks<N> eliminate_inner_sites_with_slopes(const WireView& wire, cons
         look_at_coupling(s, n, wire.sites, before);
         differentiate_site(d, s.C, X, dA(n));
     }
-    turn_back(wire.sites, s.D, s.C);
-    turn_back(wire.sites, d.D, d.C);
+    turn_back_onsite(wire.sites, s.D), turn_back_coupling(wire.sites, s.C);
+    turn_back_onsite(wire.sites, d.D), turn_back_coupling(wire.sites, d.C);
     return s;
 }
 
