@@ -23,7 +23,7 @@ def bench(
     """
     from tqdm import tqdm
 
-    from disorder_landscape.bench_report import report
+    from disorder_landscape.bench.report import report
 
     with tqdm(total=repeats + 1, unit=" turns", desc="bench") as bar:
         lines = report(repeats, output, bar.update)

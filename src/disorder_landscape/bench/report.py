@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from disorder_landscape.bench import DATASETS, PAPER_ENERGIES, Progress, measure
-from disorder_landscape.bench_plot import plot
+from disorder_landscape.bench.measurements import DATASETS, PAPER_ENERGIES, Progress, measure
+from disorder_landscape.bench.plot import plot
+from disorder_landscape.bench.stopwatches import BIASES
 from disorder_landscape.files import check_writable, replacing, write_json
 from disorder_landscape.model.parameters import SITES, TEMPERATURE
-from disorder_landscape.stopwatches import BIASES
 
 
 def report(repeats: int, folder: Path, told: Progress = lambda done: None) -> list[str]:

@@ -1,4 +1,4 @@
-"""What `bench` takes the time of, and the memory: each a function that measures once."""
+"""What the benchmark takes the time of, and the memory: each a function that measures once."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ BOUND = 2500
 
 
 def plot(found: Mapping[str, Any], path: Path) -> None:
-    """Draw what `bench.measure` returns.
+    """Draw what `measurements.measure` returns.
 
     Raises
     ------

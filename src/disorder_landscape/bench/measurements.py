@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from threadpoolctl import threadpool_limits
 
-from disorder_landscape import stopwatches
+from disorder_landscape.bench import stopwatches
+from disorder_landscape.bench.stopwatches import BIASES, Stopwatch
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset.store import PACKAGES
 from disorder_landscape.machine import cores, cpu_name
@@ -18,7 +19,6 @@ from disorder_landscape.model.disorder import disorder_realization
 from disorder_landscape.model.parameters import ALPHA_RANGE, TEMPERATURE, Nanowire
 from disorder_landscape.solver.energy_grid import thermal_grid
 from disorder_landscape.solver.routes import thermal_average
-from disorder_landscape.stopwatches import BIASES, Stopwatch
 
 PAPER_ENERGIES = 151
 """Energies of one of the paper's sets, of one μ and B and all biases (S-I)."""
