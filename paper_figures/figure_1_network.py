@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from command import Request, figure_script
-from disorder_landscape.learning.networks import build_network
+from disorder_landscape.learning.networks.build import build_network
 from disorder_landscape.learning.scaling import CHANNELS, label_names
 from plotting import FULL_WIDTH, LABELS, inches
 from solids import DEPTH, draw_box

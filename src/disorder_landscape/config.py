@@ -113,7 +113,7 @@ class NetworkConfig(_Section):
     """Which network, and its size."""
 
     architecture: Literal["convolutional", "residual", "recurrent"] = "convolutional"
-    """The paper's network, a challenger, or the one that the paper tried first (S-II.2)."""
+    """The paper's network, one that it does not try, or the one that it tried first (S-II.2)."""
     width_fraction: Annotated[float, Field(gt=0, le=4)] = 1.0
     """Multiplies the filters of every convolution (Fig. S2); the paper's network is 1.0."""
 

@@ -1,15 +1,12 @@
-"""The paper's convolutional network, layer for layer (Fig. 1, S-II.2), and where to find others."""
+"""The paper's convolutional network, layer for layer (Fig. 1, S-II.2)."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from disorder_landscape.arguments import require
-from disorder_landscape.learning import challengers
 from disorder_landscape.learning.backend import import_keras
 
-FILTERS = (256, 512, 1028)
-"""Filters of the convolutions of each set, at the paper's width (Fig. 1)."""
 KERNELS_3D = ((5, 3), (3, 3, 3))
 """Edge of the kernel of each 3D convolution, set by set (S-II.2)."""
 KERNELS_2D = (3, 3, 3, 3)
@@ -23,62 +20,7 @@ SMALLEST_GRID = {"mu": 8, "B": 8, "bias": 4}
 """Each max pooling halves an axis: three times μ and B, two times V_bias. One point must remain."""
 
 
-def build_network(
-    input_shape: tuple[int, int, int, int],
-    outputs: int,
-    width_fraction: float = 1.0,
-    learning_rate: float = 1e-4,
-    precision: str = "float32",
-    architecture: str = "convolutional",
-    weight_decay: float = 0.0,
-) -> Any:
-    """Return the compiled network: its optimizer and the mean squared error of scaled labels.
-
-    Parameters
-    ----------
-    input_shape : (mu, B, bias, channel)
-        Shape of one realization, as `scaling.conductance_array` gives it.
-    outputs : int
-        Number of labels Y.
-    width_fraction : float
-        Multiplies the filters of every convolution (Fig. S2).
-    learning_rate : float
-        Of Adam.
-    precision : str
-        A Keras dtype policy: "float32" or "mixed_bfloat16". The output layer stays in float32.
-    architecture : {"convolutional", "residual", "recurrent"}
-        The paper's network, or one of `challengers`.
-    weight_decay : float
-        Of AdamW; 0 is Adam, as in the paper.
-
-    Returns
-    -------
-    keras.Model
-        Maps (realization, mu, B, bias, channel) to (realization, outputs).
-
-    Raises
-    ------
-    ArgumentError
-        If the grid is too small for three poolings.
-    """
-    keras = import_keras()
-    filters = [max(1, round(width_fraction * f)) for f in FILTERS]
-    inputs = keras.Input(input_shape, name="conductance")
-    layers_of = {
-        "convolutional": _convolutional,
-        "residual": challengers.residual,
-        "recurrent": challengers.recurrent,
-    }[architecture]
-    features = layers_of(inputs, filters, precision)
-    labels = keras.layers.Dense(outputs, dtype="float32", name="labels")(features)
-    network = keras.Model(inputs, labels, name="disorder_landscape")
-    # Keras decouples the decay from the gradient, which makes this AdamW.
-    optimizer = keras.optimizers.Adam(learning_rate, weight_decay=weight_decay or None)
-    network.compile(optimizer, loss="mean_squared_error")
-    return network
-
-
-def _convolutional(inputs: Any, filters: list[int], precision: str) -> Any:
+def convolutional(inputs: Any, filters: list[int], precision: str) -> Any:
     """Return the features of the paper's network.
 
     Three sets of convolutions (3D, 3D, 2D), each followed by batch normalization and max pooling,
