@@ -2,7 +2,7 @@
 
 Each point is where measured learning curves (Figure S11) cross R² = 0.77: the geometric mean over
 seeds, bars from the smallest to the largest. Straight lines on logarithmic axes: the fit to these
-points, and the paper's. Drawn from claims/learning_curves.csv, which
+points, and the paper's. Drawn from results/learning_curves.csv, which
 `landscape study configs/studies/learning_curves.toml` measures.
 """
 
@@ -26,7 +26,7 @@ from disorder_landscape.studies.crossings import (
 from disorder_landscape.studies.table import read_table
 from plotting import COLUMN, INPUT, PREDICTION, inches
 
-TABLE = REPOSITORY / "claims" / "learning_curves.csv"
+TABLE = REPOSITORY / "results" / "learning_curves.csv"
 
 
 def data(request: Request) -> xr.Dataset:

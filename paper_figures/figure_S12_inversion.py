@@ -6,7 +6,7 @@ the inversions' own error bars (medians). Circles: answers that their verdict do
 (b) The error bar of V that the conductances allow, by their derivatives at the true wire, over the
 number of disorder components, for noise of 0.01 e²/h and several grids of µ × B × V_bias (medians
 over wires): the data fix all components that are drawn, and more data fix them better. Drawn from
-claims/inversions.csv and claims/uniqueness.csv, which `make inversion-study` measures. The paper
+results/inversions.csv and results/uniqueness.csv, which `make inversion-study` measures. The paper
 has neither.
 """
 

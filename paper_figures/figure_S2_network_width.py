@@ -2,8 +2,8 @@
 
 Every convolution's filters are multiplied by the fraction on the axis. Each curve starts, at the
 full width that was affordable, with as many training realizations as give R² ≈ 0.77; dots are
-single trainings, lines go through their mean over seeds. Drawn from claims/network_width.csv, which
-`landscape study configs/studies/network_width.toml` measures.
+single trainings, lines go through their mean over seeds. Drawn from results/network_width.csv,
+which `landscape study configs/studies/network_width.toml` measures.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.studies.table import read_table
 from plotting import COLUMN, draw_trainings, inches, trainings
 
-TABLE = REPOSITORY / "claims" / "network_width.csv"
+TABLE = REPOSITORY / "results" / "network_width.csv"
 
 
 def data(request: Request) -> xr.Dataset:

@@ -350,7 +350,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         check_writable("output", options.output / "accuracy.txt")
         measured = study(options.wires, options.workers, options.build)
         numbers = summary(measured)
-        made_with = provenance(f"python claims/accuracy.py --wires {options.wires}")
+        made_with = provenance(f"python results/accuracy.py --wires {options.wires}")
         made_with["seed"] = str(SEED)
         text = report(numbers, made_with)
         with replacing(options.output / "accuracy.txt") as temporary:
@@ -372,7 +372,7 @@ def _parse(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="accuracy.py",
         description=__doc__,
-        epilog="example: python claims/accuracy.py --wires 100 --output build/accuracy\n"
+        epilog="example: python results/accuracy.py --wires 100 --output build/accuracy\n"
         "takes some seconds and says whether the bounds hold; its exit status is 1 if one fails",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )

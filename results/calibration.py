@@ -132,7 +132,7 @@ def main() -> None:
     table = pd.read_csv(INVERSIONS)
     draw(table, arguments.output.with_suffix(".png"))
     made = {
-        **provenance("python claims/calibration.py"),
+        **provenance("python results/calibration.py"),
         "inversions": hashlib.sha256(INVERSIONS.read_bytes()).hexdigest(),
     }
     result = {"provenance": made, "calibration": calibration(table)}

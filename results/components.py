@@ -1,7 +1,7 @@
 """Inversions of wires of 15 and 20 components, without any network, and of 30, with a weak one.
 
 Writes components.csv, a row per inversion. What is there is not repeated: an interrupted run goes
-on. Example: python claims/components.py --components 15 --wires 4
+on. Example: python results/components.py --components 15 --wires 4
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from pathlib import Path
 from disorder_landscape.studies.components import KEYS, Task, components_row
 from disorder_landscape.studies.rows import complete, study_parser
 
-COMMAND = "python claims/components.py"
+COMMAND = "python results/components.py"
 
 
 def main() -> None:

@@ -1,7 +1,7 @@
 """Inversions of 200 fresh wires for each model and noise: accuracy, calibration, verdicts.
 
 Writes inversions.csv, a row per inversion. What is there is not repeated: an interrupted run goes
-on. Example: python claims/inversion.py --noise 0 0.01 --wires 50
+on. Example: python results/inversion.py --noise 0 0.01 --wires 50
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from pathlib import Path
 from disorder_landscape.studies.inversions import carry_out, inversion_row
 from disorder_landscape.studies.noise import NOISE
 
-COMMAND = "python claims/inversion.py"
+COMMAND = "python results/inversion.py"
 
 
 def main() -> None:

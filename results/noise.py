@@ -64,7 +64,7 @@ def main() -> None:
     with replacing(arguments.output) as temporary:
         table.to_csv(temporary, index=False)
     made = {
-        **provenance("python claims/noise.py"),
+        **provenance("python results/noise.py"),
         "minutes": round(sum(result.minutes for result in results), 2),
         "sha256": hashlib.sha256(arguments.output.read_bytes()).hexdigest(),
     }

@@ -234,7 +234,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(
         prog="odd_wires.py",
         description=__doc__,
-        epilog="example: python claims/odd_wires.py --count 100 --warm 30",
+        epilog="example: python results/odd_wires.py --count 100 --warm 30",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--count", type=int, default=3000, help="wires at T = 0 (%(default)s)")

@@ -2,7 +2,7 @@
 
 The library is iterative_ensemble_smoother, with 160 members and eight steps, each with half of the
 inflation of the one before. Writes smoothers.csv, a row per wire. What is there is not repeated: an
-interrupted run goes on. Example: python claims/smoothers.py --wires 2
+interrupted run goes on. Example: python results/smoothers.py --wires 2
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from disorder_landscape.studies.inversions import (
 MEMBERS, STEPS, RATIO = 160, 8, 2.0
 TRUNCATION = 0.999
 """Part of the singular values' sum that the library keeps."""
-COMMAND = "python claims/smoothers.py"
+COMMAND = "python results/smoothers.py"
 
 
 def library(observation: Observation, start: Gaussian, seed: int) -> tuple[FloatArray, float]:

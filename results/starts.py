@@ -1,7 +1,7 @@
 """Inversions of the same measurements from two starts, the network's guess and the prior alone.
 
 Writes starts.csv, a row per measurement. What is there is not repeated: an interrupted run goes on.
-Example: python claims/starts.py --models five_components_and_alpha --wires 10
+Example: python results/starts.py --models five_components_and_alpha --wires 10
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from pathlib import Path
 from disorder_landscape.studies.inversions import carry_out
 from disorder_landscape.studies.starts import starts_row
 
-COMMAND = "python claims/starts.py"
+COMMAND = "python results/starts.py"
 
 
 def main() -> None:

@@ -19,7 +19,7 @@ COMPONENTS = (5, 10, 15, 20, 30, 54)
 POINTS = (10, 20, 40)
 BIASES = (5, 21)
 KEYS = ["components", "points", "biases", "index"]
-COMMAND = "python claims/uniqueness.py"
+COMMAND = "python results/uniqueness.py"
 
 
 def main() -> None:

@@ -2,7 +2,7 @@
 
 Writes unmodelled.csv, a row per inversion: 102 wires with one thing other than the model has it,
 and 100 without, for the false alarms. What is there is not repeated: an interrupted run goes on.
-Example: python claims/unmodelled.py --noise 0.01 --kinds gap nothing
+Example: python results/unmodelled.py --noise 0.01 --kinds gap nothing
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from disorder_landscape.chain import FIVE, MODELS
 from disorder_landscape.studies.rows import complete, study_parser
 from disorder_landscape.studies.unmodelled import KEYS, KINDS, NOTHING, Task, unmodelled_row
 
-COMMAND = "python claims/unmodelled.py"
+COMMAND = "python results/unmodelled.py"
 WIRES, GOOD = 17, 100
 """Of each kind, and without anything unmodelled."""
 

@@ -90,7 +90,7 @@ def main() -> None:
         "wires": len(results),
         "controls": CONTROLS,
         "median_score": float(np.median([one.score for one in results])),
-        "provenance": provenance("python claims/verification.py"),
+        "provenance": provenance("python results/verification.py"),
         "verified": [one._asdict() for one in results],
     }
     write_json(arguments.output, content)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "claims"))  # as if run as a script
+sys.path.insert(0, str(Path(__file__).parents[1] / "results"))  # as if run as a script
 
 import accuracy
 

@@ -16,10 +16,10 @@ from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.studies.inversions import wrong
 from disorder_landscape.studies.unmodelled import KINDS
 
-INVERSIONS = REPOSITORY / "claims" / "inversions.csv"
-COMPONENTS = REPOSITORY / "claims" / "components.csv"
-UNIQUENESS = REPOSITORY / "claims" / "uniqueness.csv"
-UNMODELLED = REPOSITORY / "claims" / "unmodelled.csv"
+INVERSIONS = REPOSITORY / "results" / "inversions.csv"
+COMPONENTS = REPOSITORY / "results" / "components.csv"
+UNIQUENESS = REPOSITORY / "results" / "uniqueness.csv"
+UNMODELLED = REPOSITORY / "results" / "unmodelled.csv"
 SHOWN = (0.01, 0.1)
 """Noise of which the table of uniqueness has rows, in e²/h."""
 COVERAGE = (0.5, 0.8, 0.95)

@@ -15,14 +15,14 @@ from disorder_landscape.parts import needs
 def study(
     plan: Annotated[Path, typer.Argument(help="TOML file of the study, in configs/studies.")],
     output: Annotated[Path, typer.Option("--output", "-o", help="Folder of the table.")] = Path(
-        "claims"
+        "results"
     ),
     build: Build = Path("build"),
     workers: Workers = 2,
 ) -> None:
     """Carry a study out: every training that its table lacks; an interrupted one goes on.
 
-    The table is claims/<name of the study>.csv, one row per training.
+    The table is results/<name of the study>.csv, one row per training.
 
     Example: landscape study configs/studies/learning_curves.toml
     """
