@@ -1,11 +1,11 @@
 """Our values, from the files that studies have left, and how those files were made.
 
 A study leaves a table, results/<study>.csv, and results/<study>.json with an object `provenance`:
-the command, and what else is known (minutes, machine, versions, `sha256` of the table, which is checked
-then). Where there is no such object, the plan of the study, configs/studies/<study>.toml, says what
-its command is, and the column `minutes` how long it took. Files under data_small have checksums in
-data_small/SHA256SUMS, and a model's config.json says what made it. Quick measurements are kept in
-results/measured.json, each with machine, versions and minutes.
+the command, and what else is known (minutes, machine, versions, `sha256` of the table, which is
+checked then). Where there is no such object, the plan of the study, configs/studies/<study>.toml,
+says what its command is, and the column `minutes` how long it took. Files under data_small have
+checksums in data_small/SHA256SUMS, and a model's config.json says what made it. Quick measurements
+are kept in results/measured.json, each with machine, versions and minutes.
 """
 
 from __future__ import annotations
