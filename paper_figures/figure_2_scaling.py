@@ -23,7 +23,7 @@ from disorder_landscape.studies.crossings import (
     learning_curves,
     realizations_needed,
 )
-from disorder_landscape.studies.table import read_table
+from disorder_landscape.studies.trainings_table import read_table
 from plotting import COLUMN, INPUT, PREDICTION, inches
 
 TABLE = REPOSITORY / "results" / "learning_curves.csv"

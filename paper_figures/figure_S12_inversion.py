@@ -22,7 +22,7 @@ from matplotlib.figure import Figure
 
 from command import Request, figure_script
 from disorder_landscape.chain import FIVE, TEN
-from disorder_landscape.claims.inversions import INVERSIONS, UNIQUENESS
+from disorder_landscape.claims.study_tables import INVERSIONS, UNIQUENESS
 from disorder_landscape.inference.verdict import CONVERGED
 from plotting import FULL_WIDTH, INPUT, PREDICTION, inches
 

@@ -17,7 +17,7 @@ from matplotlib.ticker import FixedLocator, NullLocator
 
 from command import Request, figure_script
 from disorder_landscape.chain import REPOSITORY
-from disorder_landscape.studies.table import read_table
+from disorder_landscape.studies.trainings_table import read_table
 from plotting import COLUMN, draw_trainings, inches, trainings
 
 TABLE = REPOSITORY / "results" / "network_width.csv"

@@ -19,7 +19,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from disorder_landscape.studies.crossings import R2_AIMED_AT
-from disorder_landscape.studies.table import Result
+from disorder_landscape.studies.trainings_table import Result
 
 COLUMN, FULL_WIDTH = 3.404, 7.06
 """REVTeX's widths in inches."""

@@ -20,7 +20,7 @@ from scipy.stats import kstest, norm, uniform
 from tqdm import tqdm
 
 from disorder_landscape.chain import MODELS
-from disorder_landscape.claims.inversions import (
+from disorder_landscape.claims.study_tables import (
     COVERAGE,
     INVERSIONS,
     coverage,
@@ -33,7 +33,7 @@ from disorder_landscape.files import read_json, replacing, write_json
 from disorder_landscape.inference.attempt import best
 from disorder_landscape.inference.inversion import invert
 from disorder_landscape.inference.posterior import independence_chain
-from disorder_landscape.studies.inversions import Task, fresh_wire, network_of
+from disorder_landscape.studies.fresh_wires import Task, fresh_wire, network_of
 
 NOISE = 0.01
 """Of the wires for which there is a chain, in e²/h."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from disorder_landscape.studies.inversions import carry_out, inversion_row
+from disorder_landscape.studies.fresh_wires import carry_out, inversion_row
 from disorder_landscape.studies.noise import NOISE
 
 COMMAND = "python results/inversion.py"

@@ -19,7 +19,7 @@ from disorder_landscape.inference.polish import polish
 from disorder_landscape.inference.rounds import RoundSettings, rounds
 from disorder_landscape.inference.unknowns import Gaussian
 from disorder_landscape.model.parameters import FloatArray
-from disorder_landscape.studies.inversions import (
+from disorder_landscape.studies.fresh_wires import (
     Task,
     carry_out,
     fresh_wire,

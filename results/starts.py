@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from disorder_landscape.studies.inversions import carry_out
+from disorder_landscape.studies.fresh_wires import carry_out
 from disorder_landscape.studies.starts import starts_row
 
 COMMAND = "python results/starts.py"

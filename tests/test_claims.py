@@ -32,7 +32,7 @@ from disorder_landscape.config import Config
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.learning.scaling import LabelScaler
 from disorder_landscape.model.disorder import disorder_realization
-from disorder_landscape.studies.table import Result, write_table
+from disorder_landscape.studies.trainings_table import Result, write_table
 
 ALL = load_claims()
 STUDY = {"scale": "small", "file": "results/study.csv", "column": "R2", "where": {"n": 5}}

@@ -10,7 +10,7 @@ import pytest
 from disorder_landscape.chain import FIVE, TEN, THIRTY, shipped_model
 from disorder_landscape.claims.claim import ResultMissingError
 from disorder_landscape.claims.derived import fixed_combinations, thirty_components, true_answers
-from disorder_landscape.claims.inversions import (
+from disorder_landscape.claims.study_tables import (
     SHOWN,
     accuracy_table,
     components_table,
@@ -26,7 +26,7 @@ from disorder_landscape.inference.unknowns import Gaussian
 from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED
 from disorder_landscape.model.parameters import Nanowire
 from disorder_landscape.studies.components import measured_grid
-from disorder_landscape.studies.inversions import KEYS, Task, measured_wire, model_of, wrong
+from disorder_landscape.studies.fresh_wires import KEYS, Task, measured_wire, model_of, wrong
 from disorder_landscape.studies.rows import complete, missing, read_rows, write_rows
 from disorder_landscape.studies.uniqueness import NOISE, Setting, information_rows
 from disorder_landscape.studies.unmodelled import KINDS, NOTHING, changed

@@ -10,7 +10,7 @@ from disorder_landscape.cli import app
 from disorder_landscape.studies import runner
 from disorder_landscape.studies.plan import load_study
 from disorder_landscape.studies.runner import run_study
-from disorder_landscape.studies.table import read_table
+from disorder_landscape.studies.trainings_table import read_table
 
 PLAN = """
 title = "tiny"

@@ -10,7 +10,7 @@ from disorder_landscape.arguments import require
 from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.claim import claim_of, load_claims
 from disorder_landscape.claims.table import markdown, number
-from disorder_landscape.studies.table import Result, read_table
+from disorder_landscape.studies.trainings_table import Result, read_table
 
 TABLE = REPOSITORY / "results" / "conventions.csv"
 REFERENCE = "reference"

@@ -14,7 +14,7 @@ import numpy as np
 from disorder_landscape.chain import THIRTY, shipped_model
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.model.parameters import ALPHA, BIAS
-from disorder_landscape.studies.inversions import inverted, measured_wire, model_of, rounded
+from disorder_landscape.studies.fresh_wires import inverted, measured_wire, model_of, rounded
 
 POINTS, BIASES = 20, 21
 """Of the grid: μ and B each, and between the paper's largest biases, which cost nothing."""

@@ -11,7 +11,7 @@ from disorder_landscape.chain import dataset_folder
 from disorder_landscape.dataset import shards
 from disorder_landscape.learning.curves import training_seconds
 from disorder_landscape.studies.plan import PlannedRun, Study
-from disorder_landscape.studies.table import Result, read_table, write_table
+from disorder_landscape.studies.trainings_table import Result, read_table, write_table
 
 
 def run_study(study: Study, table: Path, build: Path, workers: int = 2) -> list[Result]:

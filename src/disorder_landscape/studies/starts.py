@@ -1,12 +1,12 @@
 """The same measurement inverted from two starts: the network's guess, and the prior alone.
 
 If a conductance profile has one disorder landscape, both end in the same answer, whatever network
-there is. `Task` is that of `studies.inversions`. Seeds differ: each start has attempts of its own.
+there is. `Task` is that of `studies.fresh_wires`. Seeds differ: each start has attempts of its own.
 """
 
 from __future__ import annotations
 
-from disorder_landscape.studies.inversions import Task, fresh_wire, inverted, network_of, rounded
+from disorder_landscape.studies.fresh_wires import Task, fresh_wire, inverted, network_of, rounded
 
 STARTS = ("network", "prior")
 OTHER_SEEDS = 2**20

@@ -1,6 +1,6 @@
 """Inversions of wires with something that the model lacks, and what notices wrong answers.
 
-Each row inverts a fresh wire of `studies.inversions`, of which one thing is other than the model
+Each row inverts a fresh wire of `studies.fresh_wires`, of which one thing is other than the model
 has it, and asks two checks: the verdict, and measurements at other barriers (K'_full of S-II.1),
 which the inversion has not seen. Rows of the kind "nothing" count false alarms.
 """
@@ -17,7 +17,7 @@ from disorder_landscape.inference.observation import Observation, noise_of_chann
 from disorder_landscape.inference.posterior import predictive_p
 from disorder_landscape.inference.unknowns import Unknowns
 from disorder_landscape.model.parameters import FloatArray, Nanowire
-from disorder_landscape.studies.inversions import SEED, inverted, measured, network_of, rounded
+from disorder_landscape.studies.fresh_wires import SEED, inverted, measured, network_of, rounded
 
 NOTHING = "nothing"
 KINDS = {

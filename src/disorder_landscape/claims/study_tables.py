@@ -13,7 +13,7 @@ from disorder_landscape.claims.table import markdown
 from disorder_landscape.inference.comparison import UNLIKELY
 from disorder_landscape.inference.verdict import CONVERGED
 from disorder_landscape.model.parameters import FloatArray
-from disorder_landscape.studies.inversions import wrong
+from disorder_landscape.studies.fresh_wires import wrong
 from disorder_landscape.studies.unmodelled import KINDS
 
 INVERSIONS = REPOSITORY / "results" / "inversions.csv"
