@@ -3,7 +3,7 @@
 Each point is where measured learning curves (Figure S11) cross R² = 0.77: the geometric mean over
 seeds, bars from the smallest to the largest. Straight lines on logarithmic axes: the fit to these
 points, and the paper's. Drawn from results/learning_curves.csv, which
-`landscape study configs/studies/learning_curves.toml` measures.
+`landscape study learning_curves` measures.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 Every convolution's filters are multiplied by the fraction on the axis. Each curve starts, at the
 full width that was affordable, with as many training realizations as give R² ≈ 0.77; dots are
 single trainings, lines go through their mean over seeds. Drawn from results/network_width.csv,
-which `landscape study configs/studies/network_width.toml` measures.
+which `landscape study network_width` measures.
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ import hashlib
 import inspect
 import json
 import re
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
 import numpy as np
@@ -32,7 +32,9 @@ from disorder_landscape.config import Config
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.learning.scaling import LabelScaler
 from disorder_landscape.model.disorder import disorder_realization
-from disorder_landscape.studies.trainings_table import Result, write_table
+from disorder_landscape.studies.plan import study_names
+from disorder_landscape.studies.rows import as_text, write_rows
+from disorder_landscape.studies.trainings_table import Result
 
 ALL = load_claims()
 STUDY = {"scale": "small", "file": "results/study.csv", "column": "R2", "where": {"n": 5}}
@@ -125,14 +127,15 @@ def _tests_exist(words):
     return any(pattern.search(path.read_text("utf-8")) for path in tests)
 
 
+def _command_exists(words):
+    commands = {command.callback.__name__ for command in app.registered_commands}
+    return words[0] in commands and (words[0] != "study" or words[1] in study_names())
+
+
 EXISTS = {
     "make": _make_exists,
-    "python": lambda words: (REPOSITORY / words[0]).is_file(),
     "pytest": _tests_exist,
-    "landscape": lambda words: (
-        words[0] in {command.name for command in app.registered_commands}
-        or words[0] in {command.callback.__name__ for command in app.registered_commands}
-    ),
+    "landscape": _command_exists,
 }
 """How each program that a command may name is checked."""
 
@@ -145,8 +148,8 @@ EXISTS = {
         ("make nonesuch", False),
         ("make evaluate PRESET=nonesuch", False),
         ("make claims ONLY=nonesuch", False),
-        ("python results/accuracy.py --wires 2000", True),
-        ("python results/nonesuch.py", False),
+        ("landscape study accuracy", True),
+        ("landscape study nonesuch", False),
         ("landscape train", True),
         ("landscape nonesuch", False),
         ("pytest -k components_required", True),
@@ -292,7 +295,7 @@ def test_a_study_without_provenance_has_its_plan(study):
     plan.parent.mkdir(parents=True)
     plan.write_text("")
     (found,) = stored_findings([claim()], root)
-    assert (found.command, found.minutes) == ("landscape study configs/studies/study.toml", 6.5)
+    assert (found.command, found.minutes) == ("landscape study study", 6.5)
 
 
 def test_a_result_must_tell_how_it_was_made(study):
@@ -332,6 +335,10 @@ def test_shipped_data_must_have_the_checksum_that_is_shipped_with_them(tmp_path)
 
 
 # ---- what is derived from a study's table -------------------------------------------------------
+
+
+def write_table(path, results):
+    write_rows(path, [as_text(asdict(result)) for result in results], "test")
 
 
 def trainings(rows):

@@ -102,7 +102,7 @@ def _made_by_study(path: Path, root: Path) -> dict[str, Any]:
         if minutes:
             made["minutes"] = sum(minutes)
         if plan.exists():
-            made["command"] = f"landscape study {plan.relative_to(root).as_posix()}"
+            made["command"] = f"landscape study {plan.stem}"
     if beside.exists():
         made.update(_read_json(beside).get("provenance", {}))
     if path.suffix == ".csv" and "sha256" in made:

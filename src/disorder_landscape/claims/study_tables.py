@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
 import pandas as pd
-from scipy.stats import chi2, f, norm
 
 from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.table import markdown
 from disorder_landscape.inference.comparison import UNLIKELY
 from disorder_landscape.inference.verdict import CONVERGED
-from disorder_landscape.model.parameters import FloatArray
+from disorder_landscape.studies.calibration import coverage, joint_coverage
 from disorder_landscape.studies.fresh_wires import wrong
 from disorder_landscape.studies.unmodelled import KINDS
 
@@ -22,7 +20,6 @@ UNIQUENESS = REPOSITORY / "results" / "uniqueness.csv"
 UNMODELLED = REPOSITORY / "results" / "unmodelled.csv"
 SHOWN = (0.01, 0.1)
 """Noise of which the table of uniqueness has rows, in e²/h."""
-COVERAGE = (0.5, 0.8, 0.95)
 WITHIN = 5.0
 """Error of V in µeV that nearly all answers at little noise should be within."""
 ACCURACY_COLUMNS = (
@@ -59,38 +56,6 @@ UNMODELLED_COLUMNS = (
     "missed",
     "right, but flagged: verdict, K'",
 )
-
-
-def deviations(table: pd.DataFrame) -> FloatArray:
-    """Return the truths' distances from the answers in deviations, all unknowns of all wires."""
-    return np.concatenate([np.array(text.split(), dtype=float) for text in table["deviations"]])
-
-
-def coverage(table: pd.DataFrame) -> FloatArray:
-    """Return which part of the truths the central intervals of COVERAGE hold."""
-    z = abs(deviations(table))
-    return np.array([(z < norm.ppf((1 + part) / 2)).mean() for part in COVERAGE])
-
-
-def joint_quantiles(table: pd.DataFrame) -> FloatArray:
-    """Return how much of each answer's normal distribution is nearer to its middle than the truth.
-
-    All unknowns count at once, by Mahalanobis' distance: uniform over the wires if error bars and
-    their correlations are right. `coverage` does not see correlations, nor a single wrong axis.
-    Where mean and covariance are those of a population that is worth n members, the square of the
-    distance is 1 + 1/n times Hotelling's T² (Ann. Math. Stat. 2, 360 (1931)).
-    """
-    squares, unknowns = table["mahalanobis"], table["deviations"].str.split().str.len()
-    n = np.maximum(table["worth"], unknowns + 1)
-    ratio = squares * (n - unknowns) / (unknowns * (n - 1) * (1 + 1 / n))
-    few = f.cdf(ratio, unknowns, n - unknowns)
-    return np.asarray(np.where(table["worth"].isna(), chi2.cdf(squares, unknowns), few))
-
-
-def joint_coverage(table: pd.DataFrame) -> FloatArray:
-    """Return which part of the truths the ellipsoids of COVERAGE hold."""
-    q = joint_quantiles(table)
-    return np.array([(q < part).mean() for part in COVERAGE])
 
 
 def accuracy_table(path: Path = INVERSIONS) -> str:

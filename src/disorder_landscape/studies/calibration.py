@@ -1,44 +1,137 @@
-"""Whether the error bars of the inversions mean what they say: simulation-based calibration.
+"""Kind "calibration": whether the error bars of the inversions mean what they say.
 
 If they do, the truth's quantiles in the answers are uniform over [0, 1] (Talts et al.,
-arXiv:1804.06788; Säilynoja, Bürkner and Vehtari, Stat. Comput. 32, 32 (2022)). For
-some wires the answer is compared with a Markov chain of the exact posterior, too.
-Reads inversions.csv; writes calibration.json and calibration.png.
+arXiv:1804.06788; Säilynoja, Bürkner and Vehtari, Stat. Comput. 32, 32 (2022)): so it is judged from
+the table of the inversions, in the same folder. For some wires the answer is compared with a Markov
+chain of the exact posterior, too; they are the rows.
 """
 
 from __future__ import annotations
 
-import argparse
 import hashlib
 import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
 from itertools import product
 from pathlib import Path
+from typing import ClassVar, Literal
 
 import numpy as np
 import pandas as pd
-from scipy.stats import kstest, norm, uniform
-from tqdm import tqdm
+from scipy.stats import chi2, f, kstest, norm, uniform
 
-from disorder_landscape.chain import MODELS
-from disorder_landscape.claims.study_tables import (
-    COVERAGE,
-    INVERSIONS,
-    coverage,
-    deviations,
-    joint_coverage,
-    joint_quantiles,
-)
-from disorder_landscape.dataset.store import provenance
-from disorder_landscape.files import read_json, replacing, write_json
+from disorder_landscape.arguments import require
+from disorder_landscape.config import Positive
+from disorder_landscape.files import replacing
 from disorder_landscape.inference.attempt import best
 from disorder_landscape.inference.inversion import invert
 from disorder_landscape.inference.posterior import independence_chain
-from disorder_landscape.studies.fresh_wires import Task, fresh_wire, network_of
+from disorder_landscape.model.parameters import FloatArray
+from disorder_landscape.parts import needs
+from disorder_landscape.studies import fresh_wires
+from disorder_landscape.studies.fresh_wires import Noise, ShippedModel, fresh_wire, network_of
+from disorder_landscape.studies.rows import Row
+from disorder_landscape.studies.study import Derived, Place, Plan
 
-NOISE = 0.01
-"""Of the wires for which there is a chain, in e²/h."""
-LENGTH = 256
-"""Of the chains."""
+COVERAGE = (0.5, 0.8, 0.95)
+INVERSIONS = "inversions.csv"
+"""The table that is judged."""
+
+
+@dataclass(frozen=True, order=True)
+class Task:
+    """One chain: a shipped model's name and the index of a fresh wire."""
+
+    model: str
+    index: int
+
+
+class CalibrationPlan(Plan):
+    """Chains of exact posteriors, and the quantiles of the inversions."""
+
+    kind: Literal["calibration"]
+    models: tuple[ShippedModel, ...]
+    noise: Noise
+    """Of the wires for which there is a chain, in e²/h."""
+    wires: Positive
+    """Of each model."""
+    length: Positive
+    """Of the chains."""
+
+    keys: ClassVar = ("model", "index")
+
+    def tasks(self) -> Sequence[Task]:
+        """Return the chains, by model and index."""
+        return sorted(Task(model, index) for model in self.models for index in range(self.wires))
+
+    def rows(self, task: Task, place: Place) -> list[dict[str, object]]:
+        """Compare an answer with a chain.
+
+        Returns
+        -------
+        list of dict
+            The part of the proposals that is accepted, the largest distance of the means in
+            deviations, and the mean ratio of the deviations.
+        """
+        observation, _ = fresh_wire(fresh_wires.Task(task.model, self.noise, task.index))
+        network = network_of(task.model, self.noise)
+        answer = best(invert(observation, network, seed=task.index)).answer
+        rng = np.random.default_rng(task.index)
+        chain = independence_chain(observation, answer, self.length, rng)
+        scale = np.sqrt(np.diag(answer.covariance))
+        apart = float((abs(chain.members.mean(0) - answer.mean) / scale).max())
+        return [
+            {
+                "model": task.model,
+                "index": task.index,
+                "acceptance": round(chain.acceptance, 3),
+                "apart_in_deviations": round(apart, 3),
+                "ratio_of_deviations": round(float((chain.members.std(0) / scale).mean()), 3),
+            }
+        ]
+
+    def derived(self, rows: Sequence[Row], place: Place) -> Derived:
+        """Return coverage and p-values of the inversions, and draw their quantiles."""
+        path = place.output / INVERSIONS
+        must = "hold the table of the inversions (landscape study inversions)"
+        require(path.exists(), "output", must, f"there is no '{path}'")
+        table = pd.read_csv(path)
+        judged = hashlib.sha256(path.read_bytes()).hexdigest()
+        numbers = {"inversions_sha256": judged, "calibration": calibration(table)}
+        return Derived(numbers, draw=partial(draw, table))
+
+
+def deviations(table: pd.DataFrame) -> FloatArray:
+    """Return the truths' distances from the answers in deviations, all unknowns of all wires."""
+    return np.concatenate([np.array(text.split(), dtype=float) for text in table["deviations"]])
+
+
+def coverage(table: pd.DataFrame) -> FloatArray:
+    """Return which part of the truths the central intervals of COVERAGE hold."""
+    z = abs(deviations(table))
+    return np.array([(z < norm.ppf((1 + part) / 2)).mean() for part in COVERAGE])
+
+
+def joint_quantiles(table: pd.DataFrame) -> FloatArray:
+    """Return how much of each answer's normal distribution is nearer to its middle than the truth.
+
+    All unknowns count at once, by Mahalanobis' distance: uniform over the wires if error bars and
+    their correlations are right. `coverage` does not see correlations, nor a single wrong axis.
+    Where mean and covariance are those of a population that is worth n members, the square of the
+    distance is 1 + 1/n times Hotelling's T² (Ann. Math. Stat. 2, 360 (1931)).
+    """
+    squares, unknowns = table["mahalanobis"], table["deviations"].str.split().str.len()
+    n = np.maximum(table["worth"], unknowns + 1)
+    ratio = squares * (n - unknowns) / (unknowns * (n - 1) * (1 + 1 / n))
+    few = f.cdf(ratio, unknowns, n - unknowns)
+    return np.asarray(np.where(table["worth"].isna(), chi2.cdf(squares, unknowns), few))
+
+
+def joint_coverage(table: pd.DataFrame) -> FloatArray:
+    """Return which part of the truths the ellipsoids of COVERAGE hold."""
+    q = joint_quantiles(table)
+    return np.array([(q < part).mean() for part in COVERAGE])
 
 
 def calibration(table: pd.DataFrame) -> dict[str, object]:
@@ -60,33 +153,12 @@ def calibration(table: pd.DataFrame) -> dict[str, object]:
     return found
 
 
-def chains(model: str, wires: int) -> list[dict[str, float]]:
-    """Compare answers with chains: proposals accepted, means apart and ratios of deviations."""
-    rows = []
-    for index in tqdm(range(wires), unit=" chains", desc=model):
-        task = Task(model, NOISE, index)
-        observation, _ = fresh_wire(task)
-        answer = best(invert(observation, network_of(model, NOISE), seed=index)).answer
-        chain = independence_chain(observation, answer, LENGTH, np.random.default_rng(index))
-        scale = np.sqrt(np.diag(answer.covariance))
-        rows.append(
-            {
-                "acceptance": round(chain.acceptance, 3),
-                "apart_in_deviations": round(
-                    float((abs(chain.members.mean(0) - answer.mean) / scale).max()), 3
-                ),
-                "ratio_of_deviations": round(float((chain.members.std(0) / scale).mean()), 3),
-            }
-        )
-    return rows
-
-
 def draw(table: pd.DataFrame, path: Path) -> None:
     """Draw how far the quantiles' distribution is from uniform, with ArviZ's 95 % bands."""
     import matplotlib as mpl
 
     mpl.use("Agg")
-    with warnings.catch_warnings():
+    with needs("dev"), warnings.catch_warnings():
         warnings.simplefilter("ignore", FutureWarning)  # of ArviZ, about its next version
         import arviz as az
     from matplotlib import pyplot as plt
@@ -114,34 +186,3 @@ def draw(table: pd.DataFrame, path: Path) -> None:
     figure.supylabel("ECDF − uniform", fontsize=8)
     with replacing(path) as temporary:
         figure.savefig(temporary, dpi=200)
-
-
-def main() -> None:
-    """Calculate, draw and write."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    folder = Path(__file__).resolve().parent
-    parser.add_argument("-o", "--output", type=Path, default=folder / "calibration.json")
-    parser.add_argument(
-        "--chains", type=int, default=10, help="wires with a chain, per model; 0 keeps those stored"
-    )
-    parser.add_argument("--models", nargs="*", choices=MODELS, default=list(MODELS))
-    arguments = parser.parse_args()
-
-    table = pd.read_csv(INVERSIONS)
-    draw(table, arguments.output.with_suffix(".png"))
-    made = {
-        **provenance("python results/calibration.py"),
-        "inversions": hashlib.sha256(INVERSIONS.read_bytes()).hexdigest(),
-    }
-    result = {"provenance": made, "calibration": calibration(table)}
-    if arguments.chains or not arguments.output.exists():
-        result["chains"] = {model: chains(model, arguments.chains) for model in arguments.models}
-    else:
-        result["chains"] = read_json(arguments.output, "output", "be of an earlier run")["chains"]
-    write_json(arguments.output, result)
-
-
-if __name__ == "__main__":
-    main()

@@ -1,6 +1,6 @@
 """Exact conductances at T = 0, in numbers of 600 bits: no rounding that anyone could see.
 
-Plain recursion over the sites with the leads attached, in the basis of
+For the study of odd wires. Plain recursion over the sites with the leads attached, in the basis of
 `disorder_landscape.model.hamiltonian`; the leads by decimation at ω + i 1e-50.
 """
 
@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 from flint import acb, acb_mat, arb, ctx
 
-from disorder_landscape import Nanowire
-from disorder_landscape.model.parameters import FloatArray
+from disorder_landscape.model.parameters import FloatArray, Nanowire
 
 ctx.prec = 600
 I = acb(0, 1)
@@ -49,24 +48,25 @@ def exact_conductances(
 
 def _point(wire: Nanowire, mu: float, B: float, omega: float, theta: float) -> _Point:
     """Return the point of a Nanowire."""
-    x = [
-        wire.hopping,
-        wire.spin_orbit_hopping,
-        wire.zeeman_per_tesla,
-        wire.gamma,
-        wire.delta0,
-        wire.lead_mu,
-        wire.lead_spin_orbit_hopping,
-        wire.lead_zeeman_per_tesla,
-        wire.dissipation,
-        mu,
-        omega,
-    ]
-    y = [arb(float(value)) for value in x]
-    y[2], y[7] = y[2] * arb(float(B)), y[7] * arb(float(B))
+    x = {
+        "t": wire.hopping,
+        "s": wire.spin_orbit_hopping,
+        "zeeman": wire.zeeman_per_tesla,
+        "gamma": wire.gamma,
+        "delta0": wire.delta0,
+        "lead_mu": wire.lead_mu,
+        "lead_s": wire.lead_spin_orbit_hopping,
+        "lead_zeeman": wire.lead_zeeman_per_tesla,
+        "dissipation": wire.dissipation,
+        "mu": mu,
+        "omega": omega,
+    }
+    y = {name: arb(float(value)) for name, value in x.items()}
+    for name in ("zeeman", "lead_zeeman"):
+        y[name] *= arb(float(B))
     angle = arb(float(theta))
     V = [arb(float(v)) for v in wire.potential_with_barriers]
-    return _Point(V, *y, angle.cos(), angle.sin())
+    return _Point(V=V, cos=angle.cos(), sin=angle.sin(), **y)
 
 
 def _onsite(p: _Point, kinetic: arb, zeeman: arb) -> acb_mat:

@@ -1,26 +1,26 @@
-"""Inversions of fresh wires whose disorder is known: how far off the answers are, and their spread.
+"""Fresh wires, whose disorder is known and which no network has seen, for studies of inversions.
 
-One row per wire and noise, with what the accuracy, the calibration and the verdicts are judged by.
-Rows are functions of (model, noise, index) alone, so that any order or interruption gives the same
-table.
+Wires, errors and answers are functions of (model, noise, index) alone, so that any order or
+interruption gives the same table, and studies share wires.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
+from typing import Annotated, ClassVar
 
 import numpy as np
 import pandas as pd
+from pydantic import AfterValidator, Field
 
 from disorder_landscape.chain import MODELS, shipped_model
-from disorder_landscape.config import DatasetConfig
+from disorder_landscape.config import DatasetConfig, Positive
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.inference.attempt import Attempt, best
-from disorder_landscape.inference.first_guess import network_labels
 from disorder_landscape.inference.inversion import invert
 from disorder_landscape.inference.measurement import Measurement, empty_measurement
 from disorder_landscape.inference.observation import Observation, noise_of_channels
@@ -28,17 +28,26 @@ from disorder_landscape.inference.unknowns import Gaussian, Unknowns
 from disorder_landscape.inference.verdict import verdict
 from disorder_landscape.learning.model import TrainedModel, load_model
 from disorder_landscape.model.parameters import FloatArray
-from disorder_landscape.studies.rows import complete, study_parser
+from disorder_landscape.studies.study import Part, Plan
 
 SEED = 2026
 """Of the fresh wires; the datasets' is 0."""
 WRONG = 0.005, 4.0
 """An answer is wrong whose V is off by more than this in meV and by more than so many of its own
 deviations, root mean square over the sites."""
-KEYS = ["model", "noise", "index"]
 
 
-@dataclass(frozen=True)
+def _shipped(model: str) -> str:
+    if model not in MODELS:
+        raise ValueError(f"it must be one of {', '.join(MODELS)}")
+    return model
+
+
+ShippedModel = Annotated[str, AfterValidator(_shipped)]
+Noise = Annotated[float, Field(ge=0, le=1)]
+
+
+@dataclass(frozen=True, order=True)
 class Task:
     """One inversion: a shipped model's name, the noise in e²/h, the index of a fresh wire."""
 
@@ -47,41 +56,31 @@ class Task:
     index: int
 
 
-def carry_out(
-    row_of: Callable[[Task], dict[str, object]],
-    doc: str | None,
-    output: Path,
-    noise: Sequence[float],
-    wires: int,
-    command: str,
-) -> None:
-    """Read the command line of a study of fresh wires, and carry out what its table lacks.
+class Wires(Part):
+    """So many wires of each model, measured with each noise."""
 
-    Parameters
-    ----------
-    row_of : callable
-        The row of a task.
-    doc : str, optional
-        The script's own, for --help.
-    output : Path
-    noise : sequence of float
-        In e²/h.
-    wires : int
-        Of each model at each noise; like the two before, what is not named otherwise.
-    command : str
-        What makes the table.
-    """
-    parser = study_parser(doc, output, noise)
-    parser.add_argument("--models", nargs="+", choices=MODELS, default=list(MODELS))
-    parser.add_argument("--wires", type=int, default=wires)
-    arguments = parser.parse_args()
-    tasks = [
-        Task(model, one, index)
-        for index in range(arguments.wires)
-        for one in arguments.noise
-        for model in arguments.models
-    ]
-    complete(row_of, tasks, arguments.output, KEYS, command, arguments.workers)
+    models: tuple[ShippedModel, ...]
+    noise: tuple[Noise, ...]
+    """In e²/h."""
+    count: Positive
+
+
+class FreshWiresPlan(Plan):
+    """A study whose tasks are fresh wires of shipped models."""
+
+    wires: tuple[Wires, ...]
+
+    keys: ClassVar = ("model", "noise", "index")
+
+    def tasks(self) -> Sequence[Task]:
+        """Return the tasks, by model, noise and index."""
+        return sorted(
+            Task(model, noise, index)
+            for group in self.wires
+            for model in group.models
+            for noise in group.noise
+            for index in range(group.count)
+        )
 
 
 def network_of(model: str, noise: float) -> TrainedModel:
@@ -153,49 +152,6 @@ def inverted(observation: Observation, network: TrainedModel | None, seed: int) 
         "seconds": seconds,
     }
     return Inverted(chosen, outcome)
-
-
-def inversion_row(task: Task) -> dict[str, object]:
-    """Invert the measurement of a fresh wire and compare the answer with the truth.
-
-    Returns
-    -------
-    dict
-        V errors in meV, root mean square over the sites; the errors of α in meV nm; `scaled_error`,
-        the mean square error of the paper's labels in units of their variance, which is 1 − R²;
-        `deviations`, the true unknowns' distances from the answer in units of its deviations;
-        `mahalanobis`, all of them together squared; and the outcome of `Inverted`.
-    """
-    observation, truth = fresh_wire(task)
-    unknowns, network = observation.unknowns, network_of(task.model, task.noise)
-    found = inverted(observation, network, task.index)
-    mean = found.answer.mean
-    guess = network_labels(network, unknowns, observation.measurement.G[None])[0]
-    papers = np.array([name != "mean" for name in unknowns.names])
-    variance = np.diag(unknowns.prior.covariance)
-    row: dict[str, object] = {
-        "model": task.model,
-        "noise": task.noise,
-        "index": task.index,
-        "network_error": unknowns.site_distance(guess, truth),
-        "site_error": unknowns.site_distance(mean, truth),
-        "network_scaled_error": ((guess - truth) ** 2 / variance)[papers].mean(),
-        "scaled_error": ((mean - truth) ** 2 / variance)[papers].mean(),
-        "network_alpha_error": abs(unknowns.alpha(guess) - unknowns.alpha(truth)),
-        "alpha_error": abs(unknowns.alpha(mean) - unknowns.alpha(truth)),
-        "mahalanobis": found.answer.squared_distance(truth),
-        **found.outcome,
-    }
-    z = (truth - mean) / np.sqrt(np.diag(found.answer.covariance))
-    return {**rounded(row), "deviations": " ".join(f"{one:.3f}" for one in z)}
-
-
-def rounded(row: dict[str, object]) -> dict[str, object]:
-    """Return a row with five digits of each number that is not whole."""
-    return {
-        key: float(f"{value:.5g}") if isinstance(value, float | np.ndarray) else value
-        for key, value in row.items()
-    }
 
 
 def wrong(table: pd.DataFrame) -> pd.Series:

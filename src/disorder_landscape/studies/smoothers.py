@@ -1,81 +1,87 @@
-"""Our rounds and polish beside a library's ES-MDA, from the same starts: errors and seconds.
+"""Kind "smoothers": our rounds and polish beside a library's ES-MDA, from the same starts.
 
-The library is iterative_ensemble_smoother, with 160 members and eight steps, each with half of the
-inflation of the one before. Writes smoothers.csv, a row per wire. What is there is not repeated: an
-interrupted run goes on. Example: python results/smoothers.py --wires 2
+The library is iterative_ensemble_smoother; each of its steps has a part of the inflation of the one
+before.
 """
 
 from __future__ import annotations
 
 import time
-from pathlib import Path
+from typing import Annotated, Literal
 
 import numpy as np
-from iterative_ensemble_smoother import ESMDA
+from pydantic import Field
 
+from disorder_landscape.config import Positive
 from disorder_landscape.inference.first_guess import network_guess
 from disorder_landscape.inference.observation import Observation
 from disorder_landscape.inference.polish import polish
 from disorder_landscape.inference.rounds import RoundSettings, rounds
 from disorder_landscape.inference.unknowns import Gaussian
 from disorder_landscape.model.parameters import FloatArray
+from disorder_landscape.parts import needs
 from disorder_landscape.studies.fresh_wires import (
+    FreshWiresPlan,
     Task,
-    carry_out,
     fresh_wire,
     network_of,
-    rounded,
 )
+from disorder_landscape.studies.rows import rounded
+from disorder_landscape.studies.study import Place
 
-MEMBERS, STEPS, RATIO = 160, 8, 2.0
 TRUNCATION = 0.999
 """Part of the singular values' sum that the library keeps."""
-COMMAND = "python results/smoothers.py"
 
 
-def library(observation: Observation, start: Gaussian, seed: int) -> tuple[FloatArray, float]:
-    """Return the mean of ES-MDA's members in the end, and their deviation of V."""
-    X = start.draw(np.random.default_rng(seed), MEMBERS)
-    smoother = ESMDA(
-        covariance=observation.variance,
-        observations=observation.data,
-        alpha=RATIO ** np.arange(STEPS)[::-1],
-        seed=seed,
-    )
-    for _ in range(smoother.num_assimilations()):
-        smoother.prepare_assimilation(Y=observation.simulate(X).T, truncation=TRUNCATION)
-        X = smoother.assimilate_batch(X=X.T).T
-    return X.mean(axis=0), observation.unknowns.site_deviation(np.cov(X.T))
+class SmoothersPlan(FreshWiresPlan):
+    """Inversions of fresh wires by two smoothers: errors and seconds."""
 
+    kind: Literal["smoothers"]
+    members: Positive
+    """Of the library's ensemble."""
+    steps: Positive
+    """Of the library."""
+    ratio: Annotated[float, Field(ge=1)]
+    """Of the inflations of two steps, one after the other."""
 
-def ours(observation: Observation, start: Gaussian, seed: int) -> tuple[FloatArray, float]:
-    """Return the same of one attempt of ours."""
-    *_, last = rounds(observation, start, [seed, 0], RoundSettings())
-    answer = polish(observation, last.distribution)
-    return answer.mean, observation.unknowns.site_deviation(answer.covariance)
+    def rows(self, task: Task, place: Place) -> list[dict[str, object]]:
+        """Let both invert one measurement."""
+        observation, truth = fresh_wire(task)
+        rng = np.random.default_rng([task.index, 2**31])
+        start = network_guess(network_of(task.model, task.noise), observation, rng)
+        distance = observation.unknowns.site_distance
+        row: dict[str, object] = {"model": task.model, "noise": task.noise, "index": task.index}
+        row["start_error"] = distance(start.mean, truth)
+        for name, method in (("library", self._library), ("ours", self._ours)):
+            begun = time.perf_counter()
+            mean, spread = method(observation, start, task.index)
+            row |= {f"{name}_error": distance(mean, truth), f"{name}_spread": spread}
+            row[f"{name}_seconds"] = time.perf_counter() - begun
+        return [rounded(row)]
 
+    def _library(
+        self, observation: Observation, start: Gaussian, seed: int
+    ) -> tuple[FloatArray, float]:
+        """Return the mean of ES-MDA's members in the end, and their deviation of V in meV."""
+        with needs("dev"):
+            from iterative_ensemble_smoother import ESMDA
 
-def row(task: Task) -> dict[str, object]:
-    """Let both invert one measurement."""
-    observation, truth = fresh_wire(task)
-    network, rng = network_of(task.model, task.noise), np.random.default_rng([task.index, 2**31])
-    start = network_guess(network, observation, rng)
-    distance = observation.unknowns.site_distance
-    found: dict[str, object] = {"model": task.model, "noise": task.noise, "index": task.index}
-    found["start_error"] = distance(start.mean, truth)
-    for name, method in (("library", library), ("ours", ours)):
-        begun = time.perf_counter()
-        mean, spread = method(observation, start, task.index)
-        found |= {f"{name}_error": distance(mean, truth), f"{name}_spread": spread}
-        found[f"{name}_seconds"] = time.perf_counter() - begun
-    return rounded(found)
+        X = start.draw(np.random.default_rng(seed), self.members)
+        smoother = ESMDA(
+            covariance=observation.variance,
+            observations=observation.data,
+            alpha=self.ratio ** np.arange(self.steps)[::-1],
+            seed=seed,
+        )
+        for _ in range(smoother.num_assimilations()):
+            smoother.prepare_assimilation(Y=observation.simulate(X).T, truncation=TRUNCATION)
+            X = smoother.assimilate_batch(X=X.T).T
+        return X.mean(axis=0), observation.unknowns.site_deviation(np.cov(X.T))
 
-
-def main() -> None:
-    """Carry out what is missing."""
-    output = Path(__file__).resolve().parent / "smoothers.csv"
-    carry_out(row, __doc__, output, [0.01], 4, COMMAND)
-
-
-if __name__ == "__main__":
-    main()
+    def _ours(
+        self, observation: Observation, start: Gaussian, seed: int
+    ) -> tuple[FloatArray, float]:
+        """Return the same of one attempt of ours."""
+        *_, last = rounds(observation, start, [seed, 0], RoundSettings())
+        answer = polish(observation, last.distribution)
+        return answer.mean, observation.unknowns.site_deviation(answer.covariance)

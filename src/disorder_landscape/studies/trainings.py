@@ -1,25 +1,27 @@
-"""A study's plan: the trainings it compares, read from a TOML file in configs/studies."""
+"""Kind "trainings": networks that are trained and scored, and differ in a few settings."""
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator, Mapping
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from copy import deepcopy
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from itertools import product
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
-from disorder_landscape.arguments import require
+from disorder_landscape.chain import dataset_folder
 from disorder_landscape.config import Config, checked
+from disorder_landscape.dataset import shards
+from disorder_landscape.studies.study import Part, Place, Plan
+from disorder_landscape.studies.trainings_table import Result
 
 
-class _Runs(BaseModel):
+class Runs(Part):
     """Trainings that have a name and some settings in common."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
 
     name: str
     set: dict[str, dict[str, Any]] = Field(default_factory=dict)
@@ -30,19 +32,10 @@ class _Runs(BaseModel):
     """Lists of values for "section.key"; every combination, also with `together`, is a training."""
 
     @model_validator(mode="after")
-    def _as_long_as_each_other(self) -> _Runs:
+    def _as_long_as_each_other(self) -> Runs:
         if len({len(values) for values in self.together.values()}) > 1:
             raise ValueError("together must have lists that are as long as each other")
         return self
-
-
-class _Plan(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-    title: str
-    base: dict[str, dict[str, Any]]
-    """A configuration, from which each training differs."""
-    runs: list[_Runs]
 
 
 @dataclass(frozen=True)
@@ -72,33 +65,96 @@ class PlannedRun:
         return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:12]
 
 
-@dataclass(frozen=True)
-class Study:
-    """The trainings of a study, by their names' order in the file."""
+class TrainedPlan(Plan):
+    """A study of networks that it trains, or finds trained."""
 
-    name: str
-    title: str
-    runs: tuple[PlannedRun, ...]
+    base: dict[str, dict[str, Any]]
+    """A configuration, from which each training differs."""
+    runs: tuple[Runs, ...]
+
+    in_processes: ClassVar = False
+
+    def trainings(self) -> list[PlannedRun]:
+        """Return the trainings, in the order of the file.
+
+        Raises
+        ------
+        ArgumentError
+            If one of them has an unknown or invalid key.
+        """
+        return [run for group in self.runs for run in _expand(group, self.base, self.title)]
 
 
-def load_study(path: str | Path) -> Study:
-    """Read a study's TOML file.
+class TrainingsPlan(TrainedPlan):
+    """Trainings that are compared; a row each.
 
-    Raises
-    ------
-    ArgumentError
-        If it cannot be read, has an unknown or invalid key, or two of its trainings are the same.
+    Datasets and models are shared with all other studies, in build/datasets and build/models. An
+    interrupted training goes on after its last finished epoch.
     """
-    path = Path(path)
-    plan = checked(_Plan, path, "study")
-    runs = tuple(run for group in plan.runs for run in _expand(group, plan.base, path))
-    keys = [run.key for run in runs]
-    twice = sorted({run.name for run in runs if keys.count(run.key) > 1})
-    require(not twice, "study", "have different runs", f"'{path}' has {', '.join(twice)} twice")
-    return Study(path.stem, plan.title, runs)
+
+    kind: Literal["trainings"]
+
+    keys: ClassVar = ("key",)
+    keeps_others: ClassVar = False
+
+    def tasks(self) -> Sequence[PlannedRun]:
+        """Return the trainings."""
+        return self.trainings()
+
+    def rows(self, task: PlannedRun, place: Place) -> list[dict[str, object]]:
+        """Generate, train and score one training."""
+        return [asdict(trained(task, place))]
 
 
-def _expand(group: _Runs, base: Mapping[str, Any], path: Path) -> Iterator[PlannedRun]:
+def trained(run: PlannedRun, place: Place) -> Result:
+    """Return what a training has come to, after what is missing of it."""
+    from disorder_landscape.learning.training import train
+
+    config, folder = run.config, model_folder(run, place.build)
+    if not (folder / "metrics.json").exists():
+        dataset = dataset_folder(config.dataset, place.build)
+        shards.generate(config.dataset, dataset, place.workers)
+        train(shards.read_shards(config.dataset, dataset), config, folder, "landscape study")
+    return _result(run, folder)
+
+
+def model_folder(run: PlannedRun, build: Path) -> Path:
+    """Return the folder of a training's network."""
+    return build / "models" / run.key
+
+
+def _result(run: PlannedRun, folder: Path) -> Result:
+    from disorder_landscape.learning.curves import training_seconds
+    from disorder_landscape.learning.examples import split
+    from disorder_landscape.learning.model import load_model, read_model_file
+
+    dataset, network, training = run.config.dataset, run.config.network, run.config.training
+    metrics = read_model_file(folder / "metrics.json")
+    used = training.realizations or split(dataset.realizations, training.test_fraction)[0].stop
+    weights = load_model(folder).network.trainable_weights
+    return Result(
+        name=run.name,
+        key=run.key,
+        dataset=dataset.hash,
+        components=dataset.components,
+        amplitude=dataset.amplitude,
+        realizations=used,
+        test_realizations=metrics["realizations"],
+        architecture=network.architecture,
+        width_fraction=network.width_fraction,
+        weights=sum(math.prod(weight.shape) for weight in weights),
+        compress_inputs=training.compress_inputs,
+        mirror=training.mirror,
+        noise=training.noise,
+        seed=training.seed,
+        R2=metrics["r2"],
+        delta_V=metrics["delta_V"],
+        delta_alpha=metrics["delta_alpha"],
+        minutes=round(training_seconds(folder / "curves.csv") / 60, 2),
+    )
+
+
+def _expand(group: Runs, base: Mapping[str, Any], title: str) -> Iterator[PlannedRun]:
     """Yield a training for every combination of the group's grid and what goes together."""
     names = [*group.together, *group.grid]
     together = list(zip(*group.together.values(), strict=True)) or [()]
@@ -109,4 +165,4 @@ def _expand(group: _Runs, base: Mapping[str, Any], path: Path) -> Iterator[Plann
         for name, value in zip(names, (*first, *others), strict=True):
             section, _, key = name.partition(".")
             content.setdefault(section, {})[key] = value
-        yield PlannedRun(group.name, checked(Config, path, "study", content))
+        yield PlannedRun(group.name, checked(Config, title, "study", content))

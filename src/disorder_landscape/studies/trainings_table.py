@@ -1,13 +1,12 @@
-"""The table of a study's results, one row per training, as CSV."""
+"""The rows of a study of trainings."""
 
 from __future__ import annotations
 
-import csv
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from disorder_landscape.files import replacing
+from disorder_landscape.studies.rows import Row, read_rows
 
 
 @dataclass(frozen=True)
@@ -44,21 +43,10 @@ class Result:
 
 def read_table(path: Path) -> list[Result]:
     """Return the rows of a study's table; none if there is no file."""
-    if not path.exists():
-        return []
-    with open(path, newline="", encoding="utf-8") as file:
-        return [_from_text(row) for row in csv.DictReader(file)]
+    return [_from_text(row) for row in read_rows(path)]
 
 
-def write_table(path: Path, results: list[Result]) -> None:
-    """Write a study's table."""
-    with replacing(path) as temporary, open(temporary, "w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, [field.name for field in fields(Result)])
-        writer.writeheader()
-        writer.writerows(asdict(result) for result in results)
-
-
-def _from_text(row: dict[str, str]) -> Result:
+def _from_text(row: Row) -> Result:
     convert: dict[str, Any] = {"int": int, "float": float, "bool": "True".__eq__, "str": str}
     values: dict[str, Any] = {}
     for field in fields(Result):

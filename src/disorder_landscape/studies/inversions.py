@@ -1,0 +1,66 @@
+"""Kind "inversions": how far off the answers for fresh wires are, and what they say of it.
+
+One row per wire and noise, with what the accuracy, the calibration and the verdicts are judged by.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+
+from disorder_landscape.inference.first_guess import network_labels
+from disorder_landscape.studies.fresh_wires import (
+    FreshWiresPlan,
+    Task,
+    fresh_wire,
+    inverted,
+    network_of,
+)
+from disorder_landscape.studies.rows import rounded
+from disorder_landscape.studies.study import Place
+
+
+class InversionsPlan(FreshWiresPlan):
+    """Inversions of fresh wires."""
+
+    kind: Literal["inversions"]
+
+    def rows(self, task: Task, place: Place) -> list[dict[str, object]]:
+        """Invert the measurement of a fresh wire."""
+        return [inversion_row(task)]
+
+
+def inversion_row(task: Task) -> dict[str, object]:
+    """Invert the measurement of a fresh wire and compare the answer with the truth.
+
+    Returns
+    -------
+    dict
+        V errors in meV, root mean square over the sites; the errors of α in meV nm; `scaled_error`,
+        the mean square error of the paper's labels in units of their variance, which is 1 − R²;
+        `deviations`, the true unknowns' distances from the answer in units of its deviations;
+        `mahalanobis`, all of them together squared; and the outcome of `Inverted`.
+    """
+    observation, truth = fresh_wire(task)
+    unknowns, network = observation.unknowns, network_of(task.model, task.noise)
+    found = inverted(observation, network, task.index)
+    mean = found.answer.mean
+    guess = network_labels(network, unknowns, observation.measurement.G[None])[0]
+    papers = np.array([name != "mean" for name in unknowns.names])
+    variance = np.diag(unknowns.prior.covariance)
+    row: dict[str, object] = {
+        "model": task.model,
+        "noise": task.noise,
+        "index": task.index,
+        "network_error": unknowns.site_distance(guess, truth),
+        "site_error": unknowns.site_distance(mean, truth),
+        "network_scaled_error": ((guess - truth) ** 2 / variance)[papers].mean(),
+        "scaled_error": ((mean - truth) ** 2 / variance)[papers].mean(),
+        "network_alpha_error": abs(unknowns.alpha(guess) - unknowns.alpha(truth)),
+        "alpha_error": abs(unknowns.alpha(mean) - unknowns.alpha(truth)),
+        "mahalanobis": found.answer.squared_distance(truth),
+        **found.outcome,
+    }
+    z = (truth - mean) / np.sqrt(np.diag(found.answer.covariance))
+    return {**rounded(row), "deviations": " ".join(f"{one:.3f}" for one in z)}
