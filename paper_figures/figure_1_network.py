@@ -50,7 +50,7 @@ LARGEST, DEPTH_SHARE, THICKEST, THINNEST = 1.0, 0.52, 0.13, 0.02
 LEFT, PITCH, GAP = 0.4, 0.18, 0.14
 """Left margin, and room after a box within a set and after a set, in inches."""
 
-SMALL_TEXT = {"fontsize": 8, "linespacing": 1.1}
+SMALL_TEXT: dict[str, Any] = {"fontsize": 8, "linespacing": 1.1}
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 
 from command import Request, figure_script
 from disorder_landscape.chain import REPOSITORY
-from disorder_landscape.claims.claim import claim_of, load_claims
+from disorder_landscape.claims.claim import paper_value
 from disorder_landscape.studies.crossings import (
     PowerLaw,
     fit_power_law,
@@ -80,9 +80,7 @@ def draw(data: xr.Dataset) -> Figure:
 
 
 def _papers_law() -> PowerLaw:
-    claims = load_claims()
-    values = (claim_of(f"fig2-{name}", claims).paper for name in ("prefactor", "exponent", "fit"))
-    return PowerLaw(*map(float, values))
+    return PowerLaw(*(paper_value(f"fig2-{name}") for name in ("prefactor", "exponent", "fit")))
 
 
 def _formula(name: str, law: PowerLaw) -> str:

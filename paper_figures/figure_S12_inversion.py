@@ -88,14 +88,14 @@ def _errors(axes: Axes, errors: xr.Dataset) -> None:
             (GUESS, -SHIFT, PREDICTION, "network"),
             (ANSWER, SHIFT, INPUT, "inversion"),
         ):
-            dots = {"ms": 2.2, "mew": 0, "color": colour, "label": None if column else label}
-            axes.plot(jitter + shift, some[name], ".", **dots)
+            once = None if column else label
+            axes.plot(jitter + shift, some[name], ".", ms=2.2, mew=0, color=colour, label=once)
         circles = jitter[refused] + SHIFT, some[ANSWER][refused]
         axes.plot(*circles, "o", ms=4, mew=0.6, mfc="none", color="k")
         if shown[column] > 0:  # without errors of measurement it is the simulation's accuracy
             bar = [np.median(some[BAR])] * 2
-            label = "own error bar" if column == 1 else None
-            axes.plot(column + np.array([0.02, 0.34]), bar, "k-", lw=1, label=label)
+            once = "own error bar" if column == 1 else None
+            axes.plot(column + np.array([0.02, 0.34]), bar, "k-", lw=1, label=once)
     axes.set(yscale="log", ylim=(5e-7, 1e3), xlim=(-0.5, len(shown) - 0.5))
     axes.set_xticks(range(len(shown)), [f"{noise:g}" for noise in shown])
     axes.set_xlabel(r"noise [$e^2/h$]")

@@ -35,7 +35,7 @@ def draw(data: xr.Dataset) -> Figure:
     draw_trainings(axes, data, "width_fraction", _label)
     widths = np.unique(data["width_fraction"])
     axes.set(xscale="log", xlabel="fraction of the paper's filters", ylabel="$R^2$")
-    axes.xaxis.set_major_locator(FixedLocator(widths))
+    axes.xaxis.set_major_locator(FixedLocator(widths.tolist()))
     axes.xaxis.set_major_formatter(lambda x, _: f"1/{1 / x:g}" if x < 1 else "1")
     axes.xaxis.set_minor_locator(NullLocator())
     axes.legend(title="components", loc="lower right")
