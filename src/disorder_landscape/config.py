@@ -64,7 +64,7 @@ class DatasetConfig(_Section):
     correlation_length: Annotated[float, Field(gt=0, le=100)] = disorder.CORRELATION_LENGTH
     """ℓ in sites."""
     amplitude: Literal["sum", "double", "unit-variance"] = "sum"
-    """Reading of "1.5 meV", see physics.disorder."""
+    """Reading of "1.5 meV", see model.disorder."""
     mu_points: Positive = 15
     mu_max: Annotated[float, Field(ge=0, le=10)] = MU_MAX
     """The grid of μ goes from 0 to this, in meV."""

@@ -48,7 +48,7 @@ def study(
             print(f"{name:16}  {done:5} of {len(one.tasks):5}  {one.plan.title}")
         return
     if plan is None:
-        raise ArgumentError("plan", "be the name of a study", "none is given; --list prints all")
+        raise ArgumentError("study", "be the name of a study", "none is given; --list prints all")
     chosen = load_study(plan)
     before = len(chosen.missing(place))
     with resumable():
