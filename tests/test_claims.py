@@ -525,6 +525,18 @@ def test_numbers_are_printed_short(value, printed):
     assert table.number(value) == printed
 
 
+def test_each_claim_of_the_short_table_is_a_link_to_its_section():
+    found = stored_findings(ALL)
+    for one, cells in zip(found, table.summary(found), strict=True):
+        link = re.fullmatch(r"\[(.*)\]\(#(.*)\)", cells[0])
+        text = table.section(one)
+        assert text.startswith(f"## {link[1]}\n")
+        assert link[2] == re.sub(r"[^\w-]", "", link[1])  # as MyST and web hosts name a heading
+        assert cells[1] in text
+        assert cells[2] in text
+        assert one.claim.statement in text
+
+
 def test_markdown_escapes_what_would_end_a_cell():
     assert table.markdown(("a", "b"), [("x|y", "")]) == "| a | b |\n|---|---|\n| x\\|y |  |\n"
 
