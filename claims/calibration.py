@@ -31,8 +31,8 @@ from disorder_landscape.claims.inversions import (
 from disorder_landscape.dataset.store import provenance
 from disorder_landscape.files import read_json, replacing, write_json
 from disorder_landscape.inference.attempt import best
-from disorder_landscape.inference.inversion import invert
-from disorder_landscape.inference.posterior import independence_chain
+from disorder_landscape.inference.invert import invert
+from disorder_landscape.inference.posterior.markov_chain import independence_chain
 from disorder_landscape.studies.inversions import Task, fresh_wire, network_of
 
 NOISE = 0.01

@@ -13,11 +13,11 @@ from pathlib import Path
 import numpy as np
 from iterative_ensemble_smoother import ESMDA
 
-from disorder_landscape.inference.first_guess import network_guess
-from disorder_landscape.inference.observation import Observation
-from disorder_landscape.inference.polish import polish
-from disorder_landscape.inference.rounds import RoundSettings, rounds
-from disorder_landscape.inference.unknowns import Gaussian
+from disorder_landscape.inference.problem.observation import Observation
+from disorder_landscape.inference.problem.unknowns import Gaussian
+from disorder_landscape.inference.search.first_guess import network_guess
+from disorder_landscape.inference.search.gauss_newton import polish
+from disorder_landscape.inference.search.regression_rounds import RoundSettings, rounds
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.studies.inversions import (
     Task,

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from disorder_landscape.config import DatasetConfig
-from disorder_landscape.inference.unknowns import Gaussian, Unknowns
+from disorder_landscape.inference.problem.unknowns import Gaussian, Unknowns
 
 CONFIG = DatasetConfig(realizations=1, components=3, sites=50)
 UNKNOWNS = Unknowns(CONFIG)

@@ -262,9 +262,9 @@ def infer(
     from disorder_landscape.dataset.store import read_dataset, write_dataset
     from disorder_landscape.files import check_netcdf, check_writable
     from disorder_landscape.inference.infer import infer as find
-    from disorder_landscape.inference.measurement import measurement_of
-    from disorder_landscape.inference.observation import stated_noise
     from disorder_landscape.inference.plot import plot_inference
+    from disorder_landscape.inference.problem.measurement import measurement_of
+    from disorder_landscape.inference.problem.observation import stated_noise
     from disorder_landscape.inference.progress import inference_progress
     from disorder_landscape.inference.report import noise_hint, parse_noise, summary
     from disorder_landscape.learning.model import load_model_config
@@ -336,9 +336,9 @@ def verify(
 
     from disorder_landscape.dataset.store import read_dataset, write_dataset
     from disorder_landscape.files import check_netcdf
-    from disorder_landscape.inference.comparison import table
     from disorder_landscape.inference.report import parse_noise
-    from disorder_landscape.inference.verification import verify as compare
+    from disorder_landscape.inference.verification.comparison import table
+    from disorder_landscape.inference.verify import verify as compare
     from disorder_landscape.learning.model import load_model_config
     from disorder_landscape.model.quantities import CONDUCTANCES
     from disorder_landscape.simulation import parse_grid

@@ -20,9 +20,9 @@ from disorder_landscape.claims.inversions import (
     unmodelled_table,
 )
 from disorder_landscape.config import DatasetConfig
-from disorder_landscape.inference.inversion import word_heard
-from disorder_landscape.inference.measurement import empty_measurement
-from disorder_landscape.inference.unknowns import Gaussian
+from disorder_landscape.inference.invert import word_heard
+from disorder_landscape.inference.problem.measurement import empty_measurement
+from disorder_landscape.inference.problem.unknowns import Gaussian
 from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED
 from disorder_landscape.model.parameters import Nanowire
 from disorder_landscape.studies.components import measured_grid

@@ -10,8 +10,8 @@ from scipy.stats import chi2, f, norm
 
 from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.table import markdown
-from disorder_landscape.inference.comparison import UNLIKELY
 from disorder_landscape.inference.verdict import CONVERGED
+from disorder_landscape.inference.verification.comparison import UNLIKELY
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.studies.inversions import wrong
 from disorder_landscape.studies.unmodelled import KINDS

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from disorder_landscape.inference.observation import Observation, objective, squared_misfits
-from disorder_landscape.inference.population import Population
-from disorder_landscape.inference.unknowns import Gaussian
+from disorder_landscape.inference.posterior.importance_sampling import Population
+from disorder_landscape.inference.problem.observation import Observation, objective, squared_misfits
+from disorder_landscape.inference.problem.unknowns import Gaussian
 from disorder_landscape.model.parameters import FloatArray
 
 TOLERATED = 3.5

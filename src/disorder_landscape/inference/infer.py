@@ -13,17 +13,21 @@ from disorder_landscape.arguments import ArgumentError, number_in, require, whol
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.inference.attempt import Attempt, best
 from disorder_landscape.inference.checkpoint import Checkpoint
-from disorder_landscape.inference.first_guess import as_seen
-from disorder_landscape.inference.inversion import (
+from disorder_landscape.inference.invert import (
     InversionSettings,
     Told,
     invert,
     usual_settings,
     word_heard,
 )
-from disorder_landscape.inference.measurement import measurement_of, settings_of
-from disorder_landscape.inference.observation import Observation, noise_of_channels, stated_noise
-from disorder_landscape.inference.unknowns import Unknowns
+from disorder_landscape.inference.problem.measurement import measurement_of, settings_of
+from disorder_landscape.inference.problem.observation import (
+    Observation,
+    noise_of_channels,
+    stated_noise,
+)
+from disorder_landscape.inference.problem.unknowns import Unknowns
+from disorder_landscape.inference.search.first_guess import as_seen
 from disorder_landscape.inference.verdict import verdict
 from disorder_landscape.learning.model import TrainedModel, load_model, load_model_config
 from disorder_landscape.model.parameters import PARAMETER_RANGES, FloatArray

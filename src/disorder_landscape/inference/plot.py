@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from disorder_landscape.files import replacing
-from disorder_landscape.inference.measurement import Measurement
+from disorder_landscape.inference.problem.measurement import Measurement
 from disorder_landscape.inference.report import alpha_with_deviation, error_bar
 from disorder_landscape.inference.verdict import CONVERGED
 from disorder_landscape.model.parameters import FloatArray

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 from tqdm import tqdm
 
-from disorder_landscape.inference.inversion import Step, Told
+from disorder_landscape.inference.invert import Step, Told
 
 USUAL_STEPS = {"round": 4, "polish": 3, "population": 4}
 """How many most attempts from a guess take, of about one length: what the time left is estimated

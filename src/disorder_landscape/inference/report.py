@@ -7,7 +7,7 @@ import xarray as xr
 
 from disorder_landscape.arguments import numbers_of
 from disorder_landscape.config import TrainingConfig
-from disorder_landscape.inference.observation import noise_of_channels, one_or_each
+from disorder_landscape.inference.problem.observation import noise_of_channels, one_or_each
 from disorder_landscape.inference.verdict import CONVERGED
 from disorder_landscape.learning.scaling import NOISE_FLOOR
 from disorder_landscape.model.parameters import FloatArray

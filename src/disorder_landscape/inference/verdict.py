@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from disorder_landscape.inference.attempt import TOLERATED, Attempt, best
-from disorder_landscape.inference.observation import Observation, squared_misfits
+from disorder_landscape.inference.problem.observation import Observation, squared_misfits
 
 CONVERGED = "converged"
 NOT_CONVERGED = "not converged"

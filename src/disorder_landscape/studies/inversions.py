@@ -20,11 +20,11 @@ from disorder_landscape.chain import MODELS, shipped_model
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.inference.attempt import Attempt, best
-from disorder_landscape.inference.first_guess import network_labels
-from disorder_landscape.inference.inversion import invert
-from disorder_landscape.inference.measurement import Measurement, empty_measurement
-from disorder_landscape.inference.observation import Observation, noise_of_channels
-from disorder_landscape.inference.unknowns import Gaussian, Unknowns
+from disorder_landscape.inference.invert import invert
+from disorder_landscape.inference.problem.measurement import Measurement, empty_measurement
+from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
+from disorder_landscape.inference.problem.unknowns import Gaussian, Unknowns
+from disorder_landscape.inference.search.first_guess import network_labels
 from disorder_landscape.inference.verdict import verdict
 from disorder_landscape.learning.model import TrainedModel, load_model
 from disorder_landscape.model.parameters import FloatArray

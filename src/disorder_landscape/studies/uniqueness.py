@@ -15,10 +15,10 @@ import numpy as np
 
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset.realizations import realization
-from disorder_landscape.inference.measurement import empty_measurement
-from disorder_landscape.inference.observation import Observation, noise_of_channels
-from disorder_landscape.inference.polish import linearise
-from disorder_landscape.inference.unknowns import Gaussian, Unknowns
+from disorder_landscape.inference.problem.measurement import empty_measurement
+from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
+from disorder_landscape.inference.problem.unknowns import Gaussian, Unknowns
+from disorder_landscape.inference.search.gauss_newton import linearise
 from disorder_landscape.model.parameters import FloatArray
 
 NOISE = (0.001, 0.01, 0.1)

@@ -12,10 +12,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from disorder_landscape.dataset.realizations import realization
-from disorder_landscape.inference.measurement import Measurement, empty_measurement, simulated
-from disorder_landscape.inference.observation import Observation, noise_of_channels
-from disorder_landscape.inference.posterior import predictive_p
-from disorder_landscape.inference.unknowns import Unknowns
+from disorder_landscape.inference.posterior.markov_chain import predictive_p
+from disorder_landscape.inference.problem.measurement import (
+    Measurement,
+    empty_measurement,
+    simulated,
+)
+from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
+from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.model.parameters import FloatArray, Nanowire
 from disorder_landscape.studies.inversions import SEED, inverted, measured, network_of, rounded
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from disorder_landscape.config import DatasetConfig
-from disorder_landscape.inference.observation import Observation
-from disorder_landscape.inference.unknowns import Gaussian, Unknowns
+from disorder_landscape.inference.problem.observation import Observation
+from disorder_landscape.inference.problem.unknowns import Gaussian, Unknowns
 from disorder_landscape.learning.model import TrainedModel, points_of_grid
 from disorder_landscape.model.parameters import FloatArray
 

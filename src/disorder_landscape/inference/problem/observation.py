@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from disorder_landscape.arguments import number_in, require
-from disorder_landscape.inference.measurement import Measurement, simulated
-from disorder_landscape.inference.unknowns import Unknowns
+from disorder_landscape.inference.problem.measurement import Measurement, simulated
+from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.learning.scaling import NOISE_FLOOR
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.model.quantities import CONDUCTANCES

@@ -15,8 +15,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from disorder_landscape.inference.comparison import scores
-from disorder_landscape.inference.measurement import Measurement
+from disorder_landscape.inference.problem.measurement import Measurement
+from disorder_landscape.inference.verification.comparison import scores
 from disorder_landscape.model.disorder import MEAN_STD
 from disorder_landscape.model.parameters import FloatArray, Nanowire
 from disorder_landscape.model.quantities import CONDUCTANCES

@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from disorder_landscape.inference.observation import Observation, objective
-from disorder_landscape.inference.unknowns import Gaussian
+from disorder_landscape.inference.problem.observation import Observation, objective
+from disorder_landscape.inference.problem.unknowns import Gaussian
 from disorder_landscape.model.parameters import FloatArray
 
 WIDER = 1.15

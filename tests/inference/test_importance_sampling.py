@@ -7,9 +7,15 @@ import pytest
 
 from disorder_landscape.inference.attempt import Attempt
 from disorder_landscape.inference.checkpoint import Checkpoint
-from disorder_landscape.inference.inversion import judged
-from disorder_landscape.inference.population import WORTH, Population, population, tamed, widened
-from disorder_landscape.inference.unknowns import Gaussian, Unknowns
+from disorder_landscape.inference.invert import judged
+from disorder_landscape.inference.posterior.importance_sampling import (
+    WORTH,
+    Population,
+    population,
+    tamed,
+    widened,
+)
+from disorder_landscape.inference.problem.unknowns import Gaussian, Unknowns
 from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED, verdict
 from linear_data import CONFIG, DATA, SIZE, UNKNOWNS, Linear, posterior
 

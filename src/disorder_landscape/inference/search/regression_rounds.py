@@ -26,12 +26,12 @@ from typing import Any, Self
 
 import numpy as np
 
-from disorder_landscape.inference.members import Members
-from disorder_landscape.inference.observation import Observation, overall_misfit
-from disorder_landscape.inference.polish import laplace, linearise
-from disorder_landscape.inference.regression import learn, variance_about_lines
-from disorder_landscape.inference.unknowns import Gaussian
-from disorder_landscape.inference.word import Word
+from disorder_landscape.inference.problem.observation import Observation, overall_misfit
+from disorder_landscape.inference.problem.unknowns import Gaussian
+from disorder_landscape.inference.search.gauss_newton import laplace, linearise
+from disorder_landscape.inference.search.network_features import Word
+from disorder_landscape.inference.search.proposals import Members
+from disorder_landscape.inference.search.regression import learn, variance_about_lines
 
 Recall = Callable[[str, Callable[[], dict[str, Any]]], dict[str, Any]]
 """`Checkpoint.recall`: returns the result of a name, calculated now or before."""

@@ -20,10 +20,10 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
-from disorder_landscape.inference.members import log_mixture
-from disorder_landscape.inference.observation import Observation, objective, overall_misfit
-from disorder_landscape.inference.rounds import Recall
-from disorder_landscape.inference.unknowns import Gaussian
+from disorder_landscape.inference.problem.observation import Observation, objective, overall_misfit
+from disorder_landscape.inference.problem.unknowns import Gaussian
+from disorder_landscape.inference.search.proposals import log_mixture
+from disorder_landscape.inference.search.regression_rounds import Recall
 from disorder_landscape.model.parameters import FloatArray
 
 AT_A_TIME = 128

@@ -14,8 +14,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from disorder_landscape.inference.observation import Observation, objective, overall_misfit
-from disorder_landscape.inference.unknowns import Gaussian, Unknowns
+from disorder_landscape.inference.problem.observation import Observation, objective, overall_misfit
+from disorder_landscape.inference.problem.unknowns import Gaussian, Unknowns
 from disorder_landscape.model.parameters import FloatArray
 
 DIFFERENCE = 0.5

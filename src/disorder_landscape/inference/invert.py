@@ -12,14 +12,19 @@ import numpy as np
 
 from disorder_landscape.inference.attempt import Attempt, attempt_at, best
 from disorder_landscape.inference.checkpoint import Checkpoint
-from disorder_landscape.inference.first_guess import network_guess
-from disorder_landscape.inference.observation import Observation
-from disorder_landscape.inference.polish import polish
-from disorder_landscape.inference.population import population, widened
-from disorder_landscape.inference.rounds import WITH_WORD, Recall, RoundSettings, rounds
-from disorder_landscape.inference.unknowns import Gaussian
+from disorder_landscape.inference.posterior.importance_sampling import population, widened
+from disorder_landscape.inference.problem.observation import Observation
+from disorder_landscape.inference.problem.unknowns import Gaussian
+from disorder_landscape.inference.search.first_guess import network_guess
+from disorder_landscape.inference.search.gauss_newton import polish
+from disorder_landscape.inference.search.network_features import Word, word_on
+from disorder_landscape.inference.search.regression_rounds import (
+    WITH_WORD,
+    Recall,
+    RoundSettings,
+    rounds,
+)
 from disorder_landscape.inference.verdict import NOT_CONVERGED, is_surely_right, verdict
-from disorder_landscape.inference.word import Word, word_on
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.model.parameters import BOLTZMANN
 

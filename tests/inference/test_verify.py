@@ -9,8 +9,8 @@ import xarray as xr
 import disorder_landscape as dl
 from disorder_landscape import ArgumentError, Nanowire, conductance
 from disorder_landscape.config import DatasetConfig, WireConfig
-from disorder_landscape.inference.comparison import scores, table
-from disorder_landscape.inference.verification import control_wires
+from disorder_landscape.inference.verification.comparison import scores, table
+from disorder_landscape.inference.verify import control_wires
 from disorder_landscape.model.disorder import cosine_components
 from disorder_landscape.model.quantities import CONDUCTANCES
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from sklearn.covariance import ledoit_wolf
 
-from disorder_landscape.inference.observation import Observation
-from disorder_landscape.inference.word import Said
+from disorder_landscape.inference.problem.observation import Observation
+from disorder_landscape.inference.search.network_features import Said
 from disorder_landscape.model.parameters import FloatArray
 
 RIDGES = np.logspace(-1, 1.5, 6)

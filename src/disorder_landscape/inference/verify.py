@@ -21,19 +21,19 @@ from numpy.typing import ArrayLike
 
 from disorder_landscape.arguments import grid_in, require, whole_number_in
 from disorder_landscape.config import DatasetConfig
-from disorder_landscape.inference.comparison import (
-    LEAST_MEMBERS,
-    SIGNIFICANCE,
-    comparison,
-)
-from disorder_landscape.inference.measurement import Measurement, measurement_of, simulated
-from disorder_landscape.inference.mismatch import SHIFTS, mean_squares, simulations
-from disorder_landscape.inference.observation import (
+from disorder_landscape.inference.posterior.markov_chain import predictive_p
+from disorder_landscape.inference.problem.measurement import Measurement, measurement_of, simulated
+from disorder_landscape.inference.problem.observation import (
     errors_variance,
     noise_of_channels,
     stated_noise,
 )
-from disorder_landscape.inference.posterior import predictive_p
+from disorder_landscape.inference.verification.comparison import (
+    LEAST_MEMBERS,
+    SIGNIFICANCE,
+    comparison,
+)
+from disorder_landscape.inference.verification.mismatch import SHIFTS, mean_squares, simulations
 from disorder_landscape.model.disorder import disorder_realization
 from disorder_landscape.model.parameters import FloatArray, Nanowire
 from disorder_landscape.observables.conductance import Progress

@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from disorder_landscape.inference.first_guess import as_seen, network_labels
-from disorder_landscape.inference.observation import Observation
+from disorder_landscape.inference.problem.observation import Observation
+from disorder_landscape.inference.search.first_guess import as_seen, network_labels
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.model.parameters import FloatArray
 

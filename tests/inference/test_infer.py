@@ -13,20 +13,24 @@ from disorder_landscape import ArgumentError, Nanowire, conductance
 from disorder_landscape.chain import FIVE, shipped_model
 from disorder_landscape.config import Config, DatasetConfig, TrainingConfig
 from disorder_landscape.dataset.realizations import realization
-from disorder_landscape.inference.first_guess import network_guess
-from disorder_landscape.inference.inversion import InversionSettings
-from disorder_landscape.inference.measurement import measurement_of, settings_of
-from disorder_landscape.inference.observation import Observation, noise_of_channels, stated_noise
+from disorder_landscape.inference.invert import InversionSettings
+from disorder_landscape.inference.problem.measurement import measurement_of, settings_of
+from disorder_landscape.inference.problem.observation import (
+    Observation,
+    noise_of_channels,
+    stated_noise,
+)
+from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.report import (
     noise_hint,
     parse_noise,
     stated_noise_hint,
     summary,
 )
-from disorder_landscape.inference.rounds import RoundSettings
-from disorder_landscape.inference.unknowns import Unknowns
+from disorder_landscape.inference.search.first_guess import network_guess
+from disorder_landscape.inference.search.network_features import word_on
+from disorder_landscape.inference.search.regression_rounds import RoundSettings
 from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED, NOT_DESCRIBED
-from disorder_landscape.inference.word import word_on
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.learning.scaling import LabelScaler
 from disorder_landscape.model.quantities import CONDUCTANCES

@@ -8,18 +8,24 @@ from scipy.stats import kstest, multivariate_normal
 
 from disorder_landscape.inference.attempt import Attempt, chi_square_excess
 from disorder_landscape.inference.checkpoint import Checkpoint
-from disorder_landscape.inference.members import Members, log_density
-from disorder_landscape.inference.observation import Observation, noise_of_channels
-from disorder_landscape.inference.polish import laplace, linearise, polish, precision_of
-from disorder_landscape.inference.posterior import independence_chain, predictive_p
-from disorder_landscape.inference.regression import (
+from disorder_landscape.inference.posterior.markov_chain import independence_chain, predictive_p
+from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
+from disorder_landscape.inference.problem.unknowns import Gaussian, Unknowns
+from disorder_landscape.inference.search.gauss_newton import (
+    laplace,
+    linearise,
+    polish,
+    precision_of,
+)
+from disorder_landscape.inference.search.network_features import Said
+from disorder_landscape.inference.search.proposals import Members, log_density
+from disorder_landscape.inference.search.regression import (
     RIDGES,
     learn,
     sum_of_products,
     variance_about_lines,
 )
-from disorder_landscape.inference.rounds import Round, RoundSettings, rounds
-from disorder_landscape.inference.unknowns import Gaussian, Unknowns
+from disorder_landscape.inference.search.regression_rounds import Round, RoundSettings, rounds
 from disorder_landscape.inference.verdict import (
     CONVERGED,
     NOT_CONVERGED,
@@ -27,7 +33,6 @@ from disorder_landscape.inference.verdict import (
     same_answer,
     verdict,
 )
-from disorder_landscape.inference.word import Said
 from disorder_landscape.model.disorder import disorder_realization
 from linear_data import CONFIG, SIZE, UNKNOWNS, Linear, posterior
 

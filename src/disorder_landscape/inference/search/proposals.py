@@ -15,9 +15,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from disorder_landscape.inference.observation import Observation
-from disorder_landscape.inference.unknowns import Gaussian
-from disorder_landscape.inference.word import Said, Word
+from disorder_landscape.inference.problem.observation import Observation
+from disorder_landscape.inference.problem.unknowns import Gaussian
+from disorder_landscape.inference.search.network_features import Said, Word
 from disorder_landscape.model.parameters import FloatArray
 
 LEAST_WEIGHT = 1e-3
