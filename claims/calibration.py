@@ -73,9 +73,9 @@ def chains(model: str, wires: int) -> list[dict[str, float]]:
             {
                 "acceptance": round(chain.acceptance, 3),
                 "apart_in_deviations": round(
-                    float((abs(chain.members.mean(0) - answer.mean) / scale).max()), 3
+                    float((abs(chain.samples.mean(0) - answer.mean) / scale).max()), 3
                 ),
-                "ratio_of_deviations": round(float((chain.members.std(0) / scale).mean()), 3),
+                "ratio_of_deviations": round(float((chain.samples.std(0) / scale).mean()), 3),
             }
         )
     return rows

@@ -246,7 +246,9 @@ def infer(
     from_prior: Annotated[
         bool, typer.Option("--from-prior", help="Without the network's guess, on any grid.")
     ] = False,
-    members: Annotated[int, typer.Option(help="Members that are written, an even number.")] = 64,
+    samples: Annotated[
+        int, typer.Option(help="Samples of the posterior that are written, an even number.")
+    ] = 64,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the ensembles.")] = 0,
     plot: Annotated[Path | None, typer.Option(help="Picture of the result.")] = None,
 ) -> None:
@@ -284,7 +286,7 @@ def infer(
     unfinished = output.with_name(f"{output.name}.unfinished.json")
     with resumable(), inference_progress() as told:
         result = find(
-            measured, model, errors, not from_prior, members, seed, None, unfinished, told
+            measured, model, errors, not from_prior, samples, seed, None, unfinished, told
         )
     write_dataset(result, output, made_here(), may_lack=["misfit"])  # of channels without data
     if plot is not None:
@@ -362,7 +364,7 @@ def verify(
         result = compare(predicted, measured, errors, controls, seed, config, tried, progress)
     result = result.assign_coords(measurement=[str(path) for path in measurements])
     if output is not None:
-        write_dataset(result, output, made_here(), may_lack=["p_members"])  # where they are few
+        write_dataset(result, output, made_here(), may_lack=["p_samples"])  # where they are few
     print("\n".join(table(result)))
     if output is not None:
         print(f"wrote {output}")

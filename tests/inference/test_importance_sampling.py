@@ -1,4 +1,4 @@
-"""Members of posteriors that are known: of lines, and of two valleys."""
+"""Samples of posteriors that are known: of lines, and of two valleys."""
 
 from dataclasses import replace
 
@@ -38,7 +38,7 @@ def lines():
     return Linear((PRIOR.mean + RNG.normal(size=SIZE) * WIDTH) @ SLOPE, SLOPE, variance=ONE)
 
 
-def test_members_have_the_posteriors_moments(lines):
+def test_samples_have_the_posteriors_moments(lines):
     exact = posterior(lines)
     scale = np.sqrt(np.diag(exact.covariance))
     far = Gaussian(exact.mean + 3 * scale, 9 * exact.covariance)
@@ -46,7 +46,7 @@ def test_members_have_the_posteriors_moments(lines):
     found = population(lines, [far], [0], told=lambda *step: steps.append(step))
     assert [number for number, _, _ in steps] == list(range(len(steps)))
     assert found.worth >= WORTH
-    assert found.members.shape == (128 * len(steps), SIZE)
+    assert found.samples.shape == (128 * len(steps), SIZE)
     assert abs((found.moments.mean - exact.mean) / scale).max() < 0.3
     ratio = np.linalg.eigvals(np.linalg.solve(exact.covariance, found.moments.covariance))
     assert 0.5 < ratio.real.min() <= ratio.real.max() < 1.7
@@ -76,7 +76,7 @@ def test_both_valleys_have_their_share():
     folds = Folds(((truth - PRIOR.mean) @ SLOPE) ** 2, SLOPE, variance=4 * ONE)
     about = [Gaussian(at, 0.05 * PRIOR.covariance) for at in (truth, 2 * PRIOR.mean - truth)]
     found = population(folds, about, [0])
-    side = (found.members - PRIOR.mean) @ (truth - PRIOR.mean) > 0
+    side = (found.samples - PRIOR.mean) @ (truth - PRIOR.mean) > 0
     assert 0.35 < found.weight[side].sum() < 0.65
     assert found.moments.squared_distance(truth) < 3 * SIZE
     drawn = found.draw(np.random.default_rng(0), 1000)
@@ -93,19 +93,19 @@ def test_weights_are_tamed_no_more_than_asked():
     assert tamed(X, 0.01 * log_weight, 100.0).worth > 100
 
 
-def test_members_are_enough_that_are_worth_it():
+def test_samples_are_enough_that_are_worth_it():
     """As many as are needed for each unknown, and of the posterior itself."""
     even = Population(np.zeros((500, SIZE)), np.full(500, 1 / 500))
     assert even.worth == pytest.approx(500)
     assert even.is_enough
     assert not replace(even, power=0.9).is_enough
-    assert not replace(even, members=np.zeros((500, 50))).is_enough
+    assert not replace(even, samples=np.zeros((500, 50))).is_enough
     one = np.full(500, 0.1 / 499)
     one[0] = 0.9
     assert not replace(even, weight=one).is_enough
 
 
-def test_members_are_drawn_as_often_as_they_weigh():
+def test_samples_are_drawn_as_often_as_they_weigh():
     X = np.arange(4.0)[:, None]
     drawn = Population(X, np.array([0.5, 0.25, 0.25, 0.0])).draw(RNG, 400)
     np.testing.assert_array_equal(np.bincount(drawn[:, 0].astype(int)), [200, 100, 100])
@@ -125,7 +125,7 @@ def test_an_interrupted_population_goes_on(lines, tmp_path):
     unavailable.simulate = fail
     second = population(unavailable, [start], [0], again.recall)
     np.testing.assert_array_equal(first.weight, second.weight)
-    np.testing.assert_array_equal(first.members, second.members)
+    np.testing.assert_array_equal(first.samples, second.samples)
 
 
 @pytest.mark.parametrize(("width", "wide"), [(1e-3, False), (1.2e-3, True), (0.02, True)])

@@ -93,17 +93,17 @@ def test_the_disorder_is_found_within_its_error_bars(inferred):
     np.testing.assert_allclose(inferred["misfit"], NOISE, rtol=0.25)
 
 
-def test_the_members_are_what_the_result_says_of_them(inferred):
+def test_the_samples_are_what_the_result_says_of_them(inferred):
     V = inferred["potential"]
-    assert V.dims == ("member", "site")
-    assert V.sizes == {"member": 64, "site": 100}
-    for name, members in inferred[["potential", "components", "alpha"]].items():
+    assert V.dims == ("sample", "site")
+    assert V.sizes == {"sample": 64, "site": 100}
+    for name, samples in inferred[["potential", "components", "alpha"]].items():
         mean, deviation = inferred[f"{name}_mean"], inferred[f"{name}_deviation"]
-        np.testing.assert_allclose(members.mean("member"), mean, atol=1e-12)
-        np.testing.assert_allclose(members.std("member"), deviation, rtol=0.4)
-    member = Nanowire(V[5].to_numpy(), alpha=float(inferred["alpha"][5]))
+        np.testing.assert_allclose(samples.mean("sample"), mean, atol=1e-12)
+        np.testing.assert_allclose(samples.std("sample"), deviation, rtol=0.4)
+    sample = Nanowire(V[5].to_numpy(), alpha=float(inferred["alpha"][5]))
     maps = inferred["map_mu"], inferred["map_B"]
-    T = dl.topological_visibility(member, *maps).isel(lead=0)
+    T = dl.topological_visibility(sample, *maps).isel(lead=0)
     certain = inferred["P_topological"].isin([0.0, 1.0]).to_numpy()
     assert certain.mean() > 0.9
     np.testing.assert_array_equal(
@@ -153,7 +153,7 @@ def test_what_it_explains_is_not(measured):
 
 
 def test_much_noise_makes_the_answer_a_population(tmp_path):
-    """Interrupted while its members are drawn, it comes to the same."""
+    """Interrupted while its samples are drawn, it comes to the same."""
     noise, file = 0.05, tmp_path / "unfinished.json"
     noisy = measure(TRUE.wire, noise).isel(mu=[0, 3, 5], B=[1, 3, 5], bias=[1, 2])
 
@@ -225,7 +225,7 @@ def test_the_seed_decides(measured, inferred):
     [
         (lambda G: G, {"noise": -0.1}, "noise must be a number from 0 to 1 e²/h, but it is -0.1"),
         (lambda G: G, {"noise": {"G_LL": 0.1}}, "noise must be one number, or one for each of"),
-        (lambda G: G, {"members": 3}, "members must be an even number"),
+        (lambda G: G, {"samples": 3}, "samples must be an even number"),
         (
             lambda G: G * 3.874e-5,
             {},
@@ -255,7 +255,7 @@ def test_the_seed_decides(measured, inferred):
         (lambda G: G + 0j, {}, "hold finite numbers, but it holds something else"),
         (lambda G: G.assign_attrs(noise=[0.1, 0.2]), {"noise": None}, "measurement states 2"),
         (lambda G: G, {"noise": True}, "noise must be a number .* it is True"),
-        (lambda G: G, {"members": 2.5}, "members must be a whole number"),
+        (lambda G: G, {"samples": 2.5}, "samples must be a whole number"),
     ],
 )
 def test_bad_input_is_refused_in_one_sentence(measured, change, options, message):
@@ -328,7 +328,7 @@ def test_a_network_of_few_points_has_its_word_on_each_wire():
     np.testing.assert_array_equal(word.seen.measurement.G, whole.G[::2, ::3])
     np.testing.assert_allclose(word.on_data, whole.G[0, 0, 0, :3], atol=1e-6)
     Y = np.zeros((200, word.seen.data.size))
-    labels = word.on_members(Y, np.random.default_rng(0))
+    labels = word.features_of_samples(Y, np.random.default_rng(0))
     np.testing.assert_allclose(labels.std(axis=0), NOISE, rtol=0.2)
 
     inferred = dl.infer(G, model, NOISE)

@@ -18,7 +18,7 @@ from disorder_landscape.inference.search.gauss_newton import (
     precision_of,
 )
 from disorder_landscape.inference.search.network_features import Said
-from disorder_landscape.inference.search.proposals import Members, log_density
+from disorder_landscape.inference.search.proposals import ProposalSamples, log_density
 from disorder_landscape.inference.search.regression import (
     RIDGES,
     learn,
@@ -122,7 +122,7 @@ def test_rounds_on_lines_do_not_count_data_twice(linear):
     assert (abs(last.distribution.mean - exact.mean) < 4 * deviation).all()
 
 
-def test_errors_of_the_regression_are_those_of_members_it_has_not_seen(linear):
+def test_errors_of_the_regression_are_those_of_samples_it_has_not_seen(linear):
     """… and shown with noise: of the known kind, and of curves that lines leave."""
     rng = np.random.default_rng(6)
     slope = linear.slope / np.linalg.norm(linear.slope, axis=1, keepdims=True)
@@ -144,7 +144,7 @@ def test_errors_of_the_regression_are_those_of_members_it_has_not_seen(linear):
 
 
 def test_leaving_out_is_what_the_closed_form_says(linear):
-    """Each member's error without it, by fitting again without it."""
+    """Each sample's error without it, by fitting again without it."""
     rng = np.random.default_rng(8)
     z, weight = rng.normal(size=(30, SIZE)), rng.uniform(0.2, 2.0, 30)
     Y = z @ linear.slope
@@ -170,7 +170,7 @@ def test_leaving_out_is_what_the_closed_form_says(linear):
 
 
 def test_no_direction_is_known_best_by_chance():
-    """Errors alike in all directions are found so by few members; others are told apart by many."""
+    """Errors alike in all directions are found so by few samples; others are told apart by many."""
     rng = np.random.default_rng(13)
     errors = rng.normal(size=(60, 12)) / np.sqrt(60)
     raw, found = (np.linalg.eigvalsh(S) for S in (errors.T @ errors, sum_of_products(errors)))
@@ -183,7 +183,7 @@ def test_no_direction_is_known_best_by_chance():
 
 
 def test_a_networks_word_is_believed_as_far_as_it_is_right():
-    """Data that teach nothing, and labels with errors of half the members' deviation."""
+    """Data that teach nothing, and labels with errors of half the samples' deviation."""
     rng = np.random.default_rng(12)
     z, Y, one = rng.normal(size=(300, SIZE)), rng.normal(size=(300, 40)), np.ones(300)
     nothing = Linear(np.zeros(40), np.zeros((SIZE, 40)))
@@ -201,7 +201,7 @@ def test_a_networks_word_is_believed_as_far_as_it_is_right():
     np.testing.assert_allclose((actual**2).mean(), np.trace(error) / SIZE, rtol=0.15)
 
 
-def test_members_of_earlier_proposals_count_as_if_drawn_from_the_last(linear):
+def test_samples_of_earlier_proposals_count_as_if_drawn_from_the_last(linear):
     """Weighted means are the last proposal's; what is far from it is neither used nor simulated."""
     simulated = []
 
@@ -213,14 +213,14 @@ def test_members_of_earlier_proposals_count_as_if_drawn_from_the_last(linear):
     rng, wide = np.random.default_rng(10), UNKNOWNS.prior
     last = Gaussian(wide.mean + 0.3 * np.sqrt(np.diag(wide.covariance)), 0.8 * wide.covariance)
     elsewhere = replace(last, mean=last.mean + 20 * np.sqrt(np.diag(wide.covariance)))
-    members = Members(Counting(linear.data, linear.slope), most=2000)
+    samples = ProposalSamples(Counting(linear.data, linear.slope), most=2000)
     for proposal in (elsewhere, wide, last):
-        members.draw(proposal, 666, rng)
-    alone = Members(members.observation, most=2000)
+        samples.draw(proposal, 666, rng)
+    alone = ProposalSamples(samples.observation, most=2000)
     alone.draw(last, 600, rng)
     np.testing.assert_allclose(alone.weighted().weight, 1.0)
     simulated.clear()
-    X, Y, weight, said = members.weighted()
+    X, Y, weight, said = samples.weighted()
     assert said is None
     assert simulated == [666, 666]
     np.testing.assert_allclose(Y, X @ linear.slope)
@@ -228,8 +228,8 @@ def test_members_of_earlier_proposals_count_as_if_drawn_from_the_last(linear):
     assert 400 < weight.sum() ** 2 / (weight**2).sum()
     np.testing.assert_allclose(weight @ z / weight.sum(), 0.0, atol=0.15)
     np.testing.assert_allclose((z.T * weight) @ z / weight.sum(), np.eye(SIZE), atol=0.2)
-    members.draw(last, 10, rng)  # the oldest are forgotten
-    assert len(members.weighted().X) <= 2 * 666 + 10
+    samples.draw(last, 10, rng)  # the oldest are forgotten
+    assert len(samples.weighted().X) <= 2 * 666 + 10
     assert simulated == [666, 666, 10]
 
 
@@ -241,8 +241,8 @@ def test_densities_are_scipys():
     np.testing.assert_allclose(found, expected)
 
 
-def test_weights_stand_for_members(linear):
-    """A member of weight two is two members."""
+def test_weights_stand_for_samples(linear):
+    """A sample of weight two is two samples."""
     rng = np.random.default_rng(9)
     z, twice = rng.normal(size=(20, 3)), np.repeat(np.arange(20), rng.integers(1, 3, 20))
     Y = rng.normal(size=(20, 40))
@@ -319,20 +319,20 @@ def test_the_chain_has_the_posteriors_moments(linear):
     chain = independence_chain(linear, exact, 4000, np.random.default_rng(2))
     assert 0.5 < chain.acceptance <= 1.0
     scale = np.sqrt(np.diag(exact.covariance))
-    assert abs((chain.members.mean(axis=0) - exact.mean) / scale).max() < 0.15
-    np.testing.assert_allclose(chain.members.std(axis=0) / scale, 1.0, atol=0.1)
+    assert abs((chain.samples.mean(axis=0) - exact.mean) / scale).max() < 0.15
+    np.testing.assert_allclose(chain.samples.std(axis=0) / scale, 1.0, atol=0.1)
     too_narrow = Gaussian(exact.mean, exact.covariance / 4)
     wide = independence_chain(linear, too_narrow, 4000, np.random.default_rng(2))
     assert wide.acceptance < chain.acceptance
 
 
 def test_further_data_are_the_answers_or_not(linear):
-    """The p-value is uniform for data that members of the answer make, and small for others."""
+    """The p-value is uniform for data that samples of the answer make, and small for others."""
     exact, rng = posterior(linear), np.random.default_rng(7)
     slope, variance = rng.normal(size=linear.slope.shape), np.full(40, 0.01**2)
     p = []
-    for member in exact.draw(rng, 60):
-        data = member @ slope + 0.01 * rng.normal(size=40)
+    for sample in exact.draw(rng, 60):
+        data = sample @ slope + 0.01 * rng.normal(size=40)
         p.append(predictive_p(exact.draw(rng, 100) @ slope, data, variance, rng))
     assert kstest(p, "uniform").pvalue > 0.01
     assert predictive_p(exact.draw(rng, 100) @ slope, data + 0.02, variance, rng) < 0.02

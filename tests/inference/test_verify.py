@@ -222,11 +222,11 @@ def test_a_wire_of_another_length_is_a_prediction_like_any_other():
 
 
 def inversion_of(wire, apart):
-    """What `infer` would return: members whose V and α are off by these."""
+    """What `infer` would return: samples whose V and α are off by these."""
     one = prediction_of(wire, shift=wire.potential.mean())
-    off = xr.DataArray(apart, dims="member")
+    off = xr.DataArray(apart, dims="sample")
     return one.assign(
-        potential=(one["potential"] + off).transpose("member", "site"),
+        potential=(one["potential"] + off).transpose("sample", "site"),
         potential_mean=one["potential"],
         alpha=wire.alpha + off,
         alpha_mean=wire.alpha,
@@ -240,7 +240,7 @@ def test_what_an_inversion_has_found_is_judged_by_its_mean():
 
 
 @pytest.mark.parametrize("barrier", [(15.0, 15.0), (12.0, 30.0)])
-def test_members_of_an_inversion_make_the_data_or_not(barrier):
+def test_samples_of_an_inversion_make_the_data_or_not(barrier):
     """Error bars in meV that hold the truth, and others that do not, as the verdict says."""
     noise, bar = 0.01, 1e-3
     apart = bar * np.random.default_rng(3).normal(size=60)
@@ -250,13 +250,13 @@ def test_members_of_an_inversion_make_the_data_or_not(barrier):
     right = verify(
         inversion_of(TRUE, apart), measured, progress=lambda *pair: told.append(pair), **options
     )
-    assert right["p_members"] > 0.05
+    assert right["p_samples"] > 0.05
     pairs = measured.sizes["mu"] * measured.sizes["B"]
     done, in_all = (list(numbers) for numbers in zip(*told, strict=True))
     assert sum(done) == in_all[0] == in_all[-1] == (1 + CONTROLS + apart.size) * pairs
     shifted = replace(TRUE, potential=TRUE.potential + 20 * bar)
     wrong = verify(inversion_of(shifted, apart), measured, **options)
-    assert wrong["p_members"] < 0.02
+    assert wrong["p_samples"] < 0.02
     assert wrong["p_value"] < 0.06  # far better than wrong disorder, even so
     few = verify(inversion_of(TRUE, apart[:9]), measured, **options)
     results = (right, wrong, few)

@@ -129,7 +129,7 @@ def test_the_network_of_thirty_components_knows_something_of_fresh_wires():
     assert word.seen.data.size == observation.data.size / 4
     prior, rng = observation.unknowns.prior, np.random.default_rng(0)
     truth = prior.draw(rng, 40)
-    labels = word.on_members(word.seen.simulate(truth), rng)
+    labels = word.features_of_samples(word.seen.simulate(truth), rng)
     squares = ((labels - truth) ** 2).mean(axis=0) / np.diag(prior.covariance)
     assert squares[:-1].mean() < 0.7  # the mean of V it does not know
     assert word.on_data.shape == (31,)
@@ -200,12 +200,12 @@ def test_joint_coverage_sees_one_axis_that_is_wrong(too_small, lost):
     assert np.all(missing > lost) if lost else np.all(abs(missing) < 0.03)
 
 
-def test_joint_coverage_knows_that_populations_have_few_members():
+def test_joint_coverage_knows_that_populations_have_few_samples():
     """Their covariance is too narrow along one axis or another, and their mean is off."""
     rng, worth, rows = np.random.default_rng(6), 40, []
     for truth in rng.normal(size=(1000, 7)):
-        members = rng.normal(size=(worth, 7))
-        drawn = Gaussian(members.mean(axis=0), np.cov(members.T))
+        samples = rng.normal(size=(worth, 7))
+        drawn = Gaussian(samples.mean(axis=0), np.cov(samples.T))
         square = float(drawn.squared_distance(truth))
         rows.append({"mahalanobis": square, "deviations": "0 0 0 0 0 0 0"})
     table = pd.DataFrame(rows)

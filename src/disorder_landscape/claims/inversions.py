@@ -77,7 +77,7 @@ def joint_quantiles(table: pd.DataFrame) -> FloatArray:
 
     All unknowns count at once, by Mahalanobis' distance: uniform over the wires if error bars and
     their correlations are right. `coverage` does not see correlations, nor a single wrong axis.
-    Where mean and covariance are those of a population that is worth n members, the square of the
+    Where mean and covariance are those of a population that is worth n samples, the square of the
     distance is 1 + 1/n times Hotelling's T² (Ann. Math. Stat. 2, 360 (1931)).
     """
     squares, unknowns = table["mahalanobis"], table["deviations"].str.split().str.len()

@@ -20,7 +20,7 @@ class Attempt:
     """Where rounds and their polish have ended."""
 
     last: Gaussian
-    """Where members of one more round would have been drawn."""
+    """Where samples of one more round would have been drawn."""
     answer: Gaussian
     data: FloatArray
     """What the most probable wire shows, shape (datum,)."""
@@ -31,7 +31,7 @@ class Attempt:
     rounds: int
     """How many there were."""
     population: Population | None = None
-    """Members of the posterior, where it is not the normal distribution of the answer."""
+    """Samples of the posterior, where it is not the normal distribution of the answer."""
 
     @property
     def fits(self) -> bool:
@@ -43,9 +43,9 @@ class Attempt:
         """Whether the error bars are those of the posterior, as far as is known."""
         return self.population is None or self.population.is_enough
 
-    def draw(self, rng: np.random.Generator, members: int) -> FloatArray:
-        """Return an even number of members of the posterior, shape (member, unknown)."""
-        return (self.answer if self.population is None else self.population).draw(rng, members)
+    def draw(self, rng: np.random.Generator, samples: int) -> FloatArray:
+        """Return an even number of samples of the posterior, shape (sample, unknown)."""
+        return (self.answer if self.population is None else self.population).draw(rng, samples)
 
 
 def attempt_at(observation: Observation, last: Gaussian, answer: Gaussian, count: int) -> Attempt:

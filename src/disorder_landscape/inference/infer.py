@@ -34,7 +34,7 @@ from disorder_landscape.model.parameters import PARAMETER_RANGES, FloatArray
 from disorder_landscape.model.quantities import AXES, CONDUCTANCES, labelled
 from disorder_landscape.observables.visibility import topological_visibility
 
-MEMBERS = 64
+SAMPLES = 64
 MAP_POINTS = 61, 81
 """Of the maps of T_IV and P(topological), along μ and B."""
 
@@ -44,7 +44,7 @@ def infer(
     model: str | Path | TrainedModel,
     noise: float | Mapping[str, float] | None = None,
     network: bool = True,
-    members: int = MEMBERS,
+    samples: int = SAMPLES,
     seed: int = 0,
     settings: InversionSettings | None = None,
     checkpoint: Path | None = None,
@@ -70,8 +70,8 @@ def infer(
         attribute noise of the measurement, or 0.001.
     network : bool
         False starts from the disorder model's prior: for other grids than the network's.
-    members : int
-        How many members of the posterior are returned, an even number.
+    samples : int
+        How many samples of the posterior are returned, an even number.
     seed : int
     settings : InversionSettings, optional
     checkpoint : Path, optional
@@ -82,15 +82,15 @@ def infer(
     Returns
     -------
     Dataset
-        Of the members: potential (member, site) and components (member, component) in meV, alpha
-        (member) in meV nm. Means and standard deviations of the posterior itself:
+        Of the samples: potential (sample, site) and components (sample, component) in meV, alpha
+        (sample) in meV nm. Means and standard deviations of the posterior itself:
         components_mean and components_deviation (component), alpha_mean and alpha_deviation,
         potential_mean and potential_deviation (site). misfit (channel) in e²/h, of the most
         probable wire, NaN where nothing was measured. Of the mean: conductances
         G_LL … G_RL (mu, B, bias) and, on a finer grid, T_IV (lead, map_mu, map_B). P_topological
-        (map_mu, map_B), the share of the members with det r < 0. Attributes: verdict ("converged",
+        (map_mu, map_B), the share of the samples with det r < 0. Attributes: verdict ("converged",
         "not converged" or "not described by the model"), excess, attempts, rounds, start, noise;
-        where the members are a population, how many independent ones they are worth.
+        where the samples are a population, how many independent ones they are worth.
 
     Raises
     ------
@@ -105,8 +105,8 @@ def infer(
     measurement = measurement_of(G, settings_of(config), complete=False)
     _check_alpha(config, G.attrs)
     errors = noise_of_channels(stated_noise(G.attrs) if noise is None else noise)
-    members = whole_number_in("members", members, 2, 10_000)
-    require(members % 2 == 0, "members", "be an even number", f"it is {members}")
+    samples = whole_number_in("samples", samples, 2, 10_000)
+    require(samples % 2 == 0, "samples", "be an even number", f"it is {samples}")
     seed = whole_number_in("seed", seed, 0, 2**31)
     observation = Observation(measurement, Unknowns(config), errors)
     trained, missing = None, False
@@ -128,7 +128,7 @@ def infer(
     notes = Checkpoint(checkpoint, fingerprint)
     attempts = invert(observation, trained, seed, settings, told, notes)
     chosen = best(attempts)
-    result = _result(observation, chosen, members, seed)
+    result = _result(observation, chosen, samples, seed)
     result.attrs = {
         "verdict": verdict(observation, attempts),
         "excess": chosen.excess,
@@ -165,10 +165,10 @@ def _seen_by_network(config: DatasetConfig, observation: Observation) -> Observa
         raise ArgumentError(name, must, f"{but} {without}") from None
 
 
-def _result(observation: Observation, chosen: Attempt, members: int, seed: int) -> xr.Dataset:
+def _result(observation: Observation, chosen: Attempt, samples: int, seed: int) -> xr.Dataset:
     m, unknowns = observation.measurement, observation.unknowns
     mean, covariance = chosen.answer.mean, chosen.answer.covariance
-    X = chosen.draw(np.random.default_rng([seed, 2**31 + 1]), members)
+    X = chosen.draw(np.random.default_rng([seed, 2**31 + 1]), samples)
     V = unknowns.potential(X)
     maps = _maps(m.mu, m.B)
     wires = unknowns.wires(np.concatenate([mean[None], X]), m.barrier)
@@ -177,9 +177,9 @@ def _result(observation: Observation, chosen: Attempt, members: int, seed: int) 
     topological = (T_IV.isel(realization=slice(1, None), lead=0) < 0).mean("realization")
     grid = ("map_mu", "map_B")
     data = {
-        "components": (("member", "component"), unknowns.components(X)),
-        "alpha": ("member", unknowns.alpha(X)),
-        "potential": (("member", "site"), V),
+        "components": (("sample", "component"), unknowns.components(X)),
+        "alpha": ("sample", unknowns.alpha(X)),
+        "potential": (("sample", "site"), V),
         "components_mean": ("component", unknowns.components(mean)),
         "components_deviation": ("component", unknowns.components(np.sqrt(np.diag(covariance)))),
         "alpha_mean": ((), unknowns.alpha(mean)),

@@ -43,8 +43,8 @@ class InversionSettings:
     rounds: RoundSettings = field(default_factory=RoundSettings)
     attempts: int = 3
     """The first starts from the network's guess, the others from the disorder model's prior."""
-    more_members: float = 1.25
-    """Each further attempt has so many times the members for each unknown, and shrinks their spread
+    more_samples: float = 1.25
+    """Each further attempt has so many times the samples for each unknown, and shrinks their spread
     more slowly."""
 
 
@@ -98,7 +98,7 @@ def invert(
         guess = _recalled(recall, "guess", make)
     for number in range(settings.attempts):
         found = guess if guess is not None and number == 0 else prior
-        count, more = 0, _with_more_members(settings, number)
+        count, more = 0, _with_more_samples(settings, number)
         for one in rounds(observation, found, [seed, number], more, recall, word):
             told(Step(number, "round", count, one.misfit, one.spread))
             found, count = one.distribution, count + 1
@@ -142,7 +142,7 @@ def judged(
 ) -> list[Attempt]:
     """Return attempts whose best has the posterior's moments, where Laplace's are not those.
 
-    The members that have them are drawn where the rounds and the polishes of all attempts that
+    The samples that have them are drawn where the rounds and the polishes of all attempts that
     fit have ended (`population`).
     """
     chosen = best(attempts)
@@ -156,10 +156,10 @@ def judged(
     return [instead if attempt is chosen else attempt for attempt in attempts]
 
 
-def _with_more_members(settings: InversionSettings, number: int) -> RoundSettings:
-    more, first = settings.more_members**number, settings.rounds
+def _with_more_samples(settings: InversionSettings, number: int) -> RoundSettings:
+    more, first = settings.more_samples**number, settings.rounds
     return replace(
         first,
-        members_per_unknown=first.members_per_unknown * more,
+        samples_per_unknown=first.samples_per_unknown * more,
         least_shrinking=first.least_shrinking ** (1 / more),
     )

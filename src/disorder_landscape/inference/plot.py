@@ -19,7 +19,7 @@ from disorder_landscape.parts import needs
 FIGURE_SIZE = 7.06, 7.2
 """In inches; the width is that of a page of the paper's journal."""
 INTERVALS = (5, 95), (25, 75)
-"""Percentiles of the members between which V is shaded."""
+"""Percentiles of the samples between which V is shaded."""
 APART = np.array([-0.25, 0.25])
 """Where the pixels of a map are that has one value of µ or B alone."""
 
@@ -77,20 +77,20 @@ def _potential(panel: Any, result: xr.Dataset) -> None:
     panel.plot(site, V, "k", lw=0.8)
     panel.set(ylabel=r"$V_\mathrm{dis}$ [meV]", xlim=(site[0], site[-1]))
     panel.tick_params(labelbottom=False)
-    panel.set_title("mean of the members")
+    panel.set_title("mean of the samples")
 
 
 def _deviation(panel: Any, result: xr.Dataset) -> None:
-    """Show the members' intervals about their mean, which V's own scale would hide."""
+    """Show the samples' intervals about their mean, which V's own scale would hide."""
     off = 1e3 * (result["potential"] - result["potential_mean"]).to_numpy()
     site = result["site"].to_numpy()
     for (low, high), alpha in zip(INTERVALS, (0.25, 0.5), strict=True):
         between = np.percentile(off, [low, high], axis=0)
-        label = f"{high - low} % of the members"
+        label = f"{high - low} % of the samples"
         panel.fill_between(site, *between, color="C0", alpha=alpha, lw=0, label=label)
     panel.set(xlabel="site", ylabel="off [µeV]", xlim=(site[0], site[-1]))
     bar = f"error bar of V: {error_bar(result):.2g} µeV, root mean square"
-    panel.set_title(f"members minus mean; {bar}")
+    panel.set_title(f"samples minus mean; {bar}")
     low, high = panel.get_ylim()
     panel.set_ylim(low, high + 0.5 * (high - low))  # room for the legend
     panel.legend(ncols=2, frameon=False, loc="upper center")

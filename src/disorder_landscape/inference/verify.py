@@ -4,7 +4,7 @@
 measurements": at other μ, B, bias, barriers or angle θ of the field. The predicted wire is
 simulated at those settings and compared with the measurement, and so are wires with random
 disorder of the same model, the controls. A prediction that explains no more than they do is wrong,
-or the model is. Members of an inversion say more: whether the measurements are among those that
+or the model is. Samples of an inversion say more: whether the measurements are among those that
 they make.
 
 Each wire, control or not, is compared at the mean of V that suits it best (`mismatch`).
@@ -29,7 +29,7 @@ from disorder_landscape.inference.problem.observation import (
     stated_noise,
 )
 from disorder_landscape.inference.verification.comparison import (
-    LEAST_MEMBERS,
+    LEAST_SAMPLES,
     SIGNIFICANCE,
     comparison,
 )
@@ -86,7 +86,7 @@ def verify(
         over measurements and channels; shift and control_shift (control) in meV; p_value, the
         chance that wrong disorder scores as well; the sentence verdict as attribute. Channels in
         which wrong disorder differs by no more than the noise have no weight in the scores. Of an
-        inversion, p_members: how likely its members make data as unlike their prediction as these,
+        inversion, p_samples: how likely its samples make data as unlike their prediction as these,
         NaN where they are fewer than 49.
 
     Raises
@@ -108,9 +108,9 @@ def verify(
     lead_mu = model.wire.lead_mu
     controlled = [predicted, *control_wires(model, controls, seed)]
     wires = [replace(wire, lead_mu=lead_mu) for wire in controlled]
-    members = _members(prediction, wires[0])
+    samples = _samples(prediction, wires[0])
     in_all = simulations(len(wires), measured, tried)
-    in_all += len(members) * sum(m.mu.size * m.B.size for m in measured)
+    in_all += len(samples) * sum(m.mu.size * m.B.size for m in measured)
 
     def told(done: int) -> None:
         if progress is not None:
@@ -119,8 +119,8 @@ def verify(
     squares, shift = mean_squares(wires, measured, tried, errors, told)
     result = comparison(np.sqrt(squares), shift, errors)
     if _is_inversion(prediction):
-        p = _p_of_members(members, measured, errors, np.random.default_rng([seed, 2]), told)
-        result["p_members"] = ((), p, {"units": "1"})
+        p = _p_of_samples(samples, measured, errors, np.random.default_rng([seed, 2]), told)
+        result["p_samples"] = ((), p, {"units": "1"})
     return result
 
 
@@ -128,28 +128,28 @@ def _is_inversion(prediction: xr.Dataset) -> bool:
     return isinstance(prediction, xr.Dataset) and "potential_mean" in prediction.variables
 
 
-def _members(prediction: xr.Dataset, wire: Nanowire) -> list[Nanowire]:
-    """Return the members of an inversion, if the prediction is one and has enough of them."""
-    if not _is_inversion(prediction) or prediction.sizes["member"] < LEAST_MEMBERS:
+def _samples(prediction: xr.Dataset, wire: Nanowire) -> list[Nanowire]:
+    """Return the samples of an inversion, if the prediction is one and has enough of them."""
+    if not _is_inversion(prediction) or prediction.sizes["sample"] < LEAST_SAMPLES:
         return []
     each = zip(prediction["potential"].to_numpy(), prediction["alpha"].to_numpy(), strict=True)
     return [replace(wire, potential=V, alpha=alpha) for V, alpha in each]
 
 
-def _p_of_members(
-    members: Sequence[Nanowire],
+def _p_of_samples(
+    samples: Sequence[Nanowire],
     measured: Sequence[Measurement],
     noise: FloatArray,
     rng: np.random.Generator,
     told: Callable[[int], None],
 ) -> float:
-    """Return `predictive_p` of an inversion's members, which know the mean of V."""
-    if not members:
+    """Return `predictive_p` of an inversion's samples, which know the mean of V."""
+    if not samples:
         return np.nan
     shown = []
     for m in measured:
         each = []
-        for wire in members:
+        for wire in samples:
             each.append(simulated(replace(wire, barrier=m.barrier), m).ravel())
             told(m.mu.size * m.B.size)
         shown.append(each)
@@ -168,7 +168,7 @@ def _predicted_wire(prediction: xr.Dataset) -> Nanowire:
     if _is_inversion(prediction):
         names = "potential_mean", "alpha_mean"
         wanted = {"potential_mean": ("site",), "alpha_mean": ()}
-        wanted |= {"potential": ("member", "site"), "alpha": ("member",)}
+        wanted |= {"potential": ("sample", "site"), "alpha": ("sample",)}
     for name, dims in wanted.items():
         there = isinstance(prediction, xr.Dataset) and name in prediction.variables
         require(there, "prediction", must, f"it lacks {name}")

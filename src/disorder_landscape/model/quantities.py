@@ -33,8 +33,8 @@ LABELS = {
     "potential_mean": ("mean of the disorder potential over the posterior", "meV"),
     "potential_deviation": ("standard deviation of the disorder potential", "meV"),
     "misfit": ("root-mean-square difference of explained and measured conductances", "e^2/h"),
-    "P_topological": ("share of the members with det r < 0", "1"),
-    "member": ("member of the posterior", "1"),
+    "P_topological": ("share of the samples with det r < 0", "1"),
+    "sample": ("sample of the posterior", "1"),
     "map_mu": ("chemical potential", "meV"),
     "map_B": ("magnetic field along the wire", "T"),
 }

@@ -40,7 +40,7 @@ OTHER_BARRIERS = (25.0, 10.0)
 """Of the measurements that check the answer, left and right in meV."""
 EVERY = 2
 """Of the points of μ and B, how many they are apart."""
-MEMBERS = 100
+SAMPLES = 100
 """Of the answer, which predict those measurements."""
 KEYS = ["model", "noise", "kind", "index"]
 
@@ -115,7 +115,7 @@ def unmodelled_row(task: Task) -> dict[str, object]:
         measured(other_settings, other_G, task.noise, task.index, 3), unknowns, noise
     )
     rng = np.random.default_rng([SEED, task.index, 4])
-    predicted = further.simulate(found.chosen.draw(rng, MEMBERS))
+    predicted = further.simulate(found.chosen.draw(rng, SAMPLES))
     return rounded(
         {
             "model": task.model,

@@ -1,12 +1,12 @@
-"""Members of a posterior that is wider than conductances are straight: importance sampling.
+"""Samples of a posterior that is wider than conductances are straight: importance sampling.
 
 Where the noise hides much, the posterior is as wide as a peak of the conductances or wider. Then it
 is no normal distribution about one optimum: it bends, and has valleys beside valleys. But there the
-answers of rounds and polishes are nearly as wide, so that members of these, weighted with the exact
-posterior, are members of the posterior. If few of them have most of the weight, the next members
+answers of rounds and polishes are nearly as wide, so that samples of these, weighted with the exact
+posterior, are samples of the posterior. If few of them have most of the weight, the next samples
 are drawn from a normal distribution with the moments of the weighted ones, and so on; all count, as
 if drawn from the mixture of all proposals (adaptive multiple importance sampling: Cornuet et al.,
-Scand. J. Stat. 39, 798 (2012)). As long as a few members have all the weight, their weights are
+Scand. J. Stat. 39, 798 (2012)). As long as a few samples have all the weight, their weights are
 raised to a power below one (Koblents and Míguez, Stat. Comput. 25, 407 (2015)).
 """
 
@@ -27,60 +27,60 @@ from disorder_landscape.inference.search.regression_rounds import Recall
 from disorder_landscape.model.parameters import FloatArray
 
 AT_A_TIME = 128
-"""Members that are drawn before the next proposal is made, at least, …"""
+"""Samples that are drawn before the next proposal is made, at least, …"""
 PER_UNKNOWN = 12
 """… and for each unknown."""
 WORTH = 150.0
-"""Done when the members are worth so many independent ones, …"""
+"""Done when the samples are worth so many independent ones, …"""
 WORTH_PER_UNKNOWN = 12.0
 """… and for each unknown, or …"""
 ITERATIONS = 10
 """… after so many iterations."""
 LEAST_SHARE = 0.25
-"""Of the members that are drawn at a time: what those that the next proposal comes from must be
+"""Of the samples that are drawn at a time: what those that the next proposal comes from must be
 worth."""
 KEPT = 0.3
-"""Proposals are drawn from again whose members are worth this part of their number. Those that have
-been fitted to few members miss what these miss: with each fitted to those before, populations of a
+"""Proposals are drawn from again whose samples are worth this part of their number. Those that have
+been fitted to few samples miss what these miss: with each fitted to those before, populations of a
 normal posterior of eleven unknowns were too narrow by 4 %, and are right within 1 % now."""
 WIDER = 1.2
-"""Members are drawn this much more widely than weighted ones lie, or an answer says."""
+"""Samples are drawn this much more widely than weighted ones lie, or an answer says."""
 
 
 @dataclass(frozen=True, eq=False)
 class Population:
-    """Members (member, unknown), and weights (member,) whose sum is one."""
+    """Samples (sample, unknown), and weights (sample,) whose sum is one."""
 
-    members: FloatArray
+    samples: FloatArray
     weight: FloatArray
     power: float = 1.0
-    """To which the weights were raised: where it is less, the members are of a wider distribution
+    """To which the weights were raised: where it is less, the samples are of a wider distribution
     than the posterior."""
 
     @property
     def worth(self) -> float:
-        """How many independent members these are worth."""
+        """How many independent samples these are worth."""
         return float(1 / (self.weight**2).sum())
 
     @property
     def is_enough(self) -> bool:
-        """Whether these are members of the posterior, and as many as are needed."""
-        needed = max(WORTH, WORTH_PER_UNKNOWN * self.members.shape[1])
+        """Whether these are samples of the posterior, and as many as are needed."""
+        needed = max(WORTH, WORTH_PER_UNKNOWN * self.samples.shape[1])
         return self.power == 1 and self.worth >= needed
 
     @property
     def moments(self) -> Gaussian:
         """The normal distribution of the same mean and covariance."""
-        mean = self.weight @ self.members
-        off = self.members - mean
+        mean = self.weight @ self.samples
+        off = self.samples - mean
         covariance = (off.T * self.weight) @ off / (1 - 1 / self.worth)
         return Gaussian(mean, (covariance + covariance.T) / 2)
 
     def draw(self, rng: np.random.Generator, count: int) -> FloatArray:
-        """Return members (count, unknown) of equal weight, by systematic resampling."""
+        """Return samples (count, unknown) of equal weight, by systematic resampling."""
         share = np.cumsum(self.weight)
         at = np.searchsorted(share / share[-1], (rng.random() + np.arange(count)) / count)
-        return self.members[at]
+        return self.samples[at]
 
 
 def population(
@@ -90,18 +90,18 @@ def population(
     recall: Recall = lambda name, calculate: calculate(),
     told: Callable[[int, float, float], None] = lambda number, misfit, spread: None,
 ) -> Population:
-    """Draw members of the posterior, or of a wider one if these are too few for that (`power`).
+    """Draw samples of the posterior, or of a wider one if these are too few for that (`power`).
 
     Parameters
     ----------
     observation : Observation
     proposals : sequence of Gaussian
-        Where the first members come from, which must be about as wide as the posterior.
+        Where the first samples come from, which must be about as wide as the posterior.
     seed : sequence of int
     recall : callable, optional
         `Checkpoint.recall`.
     told : callable, optional
-        Told the number of each iteration, the root-mean-square misfit of its best member in e²/h
+        Told the number of each iteration, the root-mean-square misfit of its best sample in e²/h
         and the deviation of V in meV.
     """
     unknowns = observation.unknowns
@@ -141,7 +141,7 @@ def _shown(observation: Observation, X: FloatArray) -> dict[str, Any]:
 
 
 def tamed(X: FloatArray, log_weight: FloatArray, worth: float) -> Population:
-    """Return members with weights to the highest power up to one that leaves them this worth."""
+    """Return samples with weights to the highest power up to one that leaves them this worth."""
 
     def to_the(power: float) -> Population:
         weight = np.exp(power * (log_weight - log_weight.max()))

@@ -1,8 +1,8 @@
-"""Members of the posterior, the check that it is normal, and whether it predicts further data.
+"""Samples of the posterior, the check that it is normal, and whether it predicts further data.
 
 The answer of an inversion is a normal distribution so narrow (some µeV) that the conductances are
 linear in the unknowns across it. Whether that is so is tested by a Markov chain of the exact
-posterior, which proposes members of the answer and accepts them or not. All proposals are made at
+posterior, which proposes samples of the answer and accepts them or not. All proposals are made at
 once, and so simulated together (independence sampler: Tierney, Ann. Statist. 22, 1701 (1994)).
 """
 
@@ -19,20 +19,20 @@ from disorder_landscape.model.parameters import FloatArray
 WIDER = 1.15
 """Proposals are this much wider than the answer, so that its tails are proposed."""
 AT_A_TIME = 64
-"""Members that are simulated at a time."""
+"""Samples that are simulated at a time."""
 
 
 class Chain(NamedTuple):
-    """Members (member, unknown) of an exact Markov chain, and the part of proposals it took."""
+    """Samples (sample, unknown) of an exact Markov chain, and the part of proposals it took."""
 
-    members: FloatArray
+    samples: FloatArray
     acceptance: float
 
 
 def independence_chain(
     observation: Observation, answer: Gaussian, length: int, rng: np.random.Generator
 ) -> Chain:
-    """Draw from the exact posterior by Metropolis' rule, with an answer's members as proposals.
+    """Draw from the exact posterior by Metropolis' rule, with an answer's samples as proposals.
 
     Parameters
     ----------
@@ -64,13 +64,13 @@ def predictive_p(
     """Return how likely an answer makes further data as unlike its prediction as these or more.
 
     The posterior predictive p-value of χ² (Gelman, Meng and Stern, Stat. Sinica 6, 733 (1996)):
-    what members of the answer show at the new settings is given errors, and the data are counted
-    among them. What the members do not agree on weighs less.
+    what samples of the answer show at the new settings is given errors, and the data are counted
+    among them. What the samples do not agree on weighs less.
 
     Parameters
     ----------
-    Y : array, shape (member, datum)
-        What members of the answer show.
+    Y : array, shape (sample, datum)
+        What samples of the answer show.
     data, variance : array, shape (datum,)
         Which the inversion has not seen, K'_full of S-II.1, and the variance of their errors.
     rng : Generator

@@ -62,7 +62,7 @@ class Observation:
         return np.asarray(errors_variance(self.noise)[self.channel])
 
     def simulate(self, X: FloatArray) -> FloatArray:
-        """Return the data of members (member, unknown), shape (member, datum)."""
+        """Return the data of samples (sample, unknown), shape (sample, datum)."""
         return np.asarray(self.conductances(X)[:, self.there])
 
     def on_some_lines(self, share: float, rng: np.random.Generator) -> Observation:
@@ -87,7 +87,7 @@ class Observation:
         return replace(self, measurement=some)
 
     def conductances(self, X: FloatArray) -> FloatArray:
-        """Return conductances of members in e²/h, shape (member, mu, B, bias, channel)."""
+        """Return conductances of samples in e²/h, shape (sample, mu, B, bias, channel)."""
         return simulated(self.unknowns.wires(X, self.measurement.barrier), self.measurement)
 
     def misfit(self, y: FloatArray) -> FloatArray:
@@ -115,13 +115,13 @@ def squared_misfits(observation: Observation, Y: FloatArray) -> FloatArray:
 
 
 def objective(observation: Observation, X: FloatArray, Y: FloatArray) -> FloatArray:
-    """Return −2 log of the posterior density of members X (…, unknown), up to a constant.
+    """Return −2 log of the posterior density of samples X (…, unknown), up to a constant.
 
     Parameters
     ----------
     observation : Observation
     X, Y : array, shapes (…, unknown) and (…, datum)
-        Members and what they show.
+        ProposalSamples and what they show.
     """
     likelihood = squared_misfits(observation, Y).sum(axis=-1)
     return np.asarray(likelihood + observation.unknowns.prior.squared_distance(X))

@@ -32,9 +32,9 @@ class Gaussian:
         off, precision = x - self.mean, np.linalg.inv(self.covariance)
         return np.asarray(np.einsum("...i,ij,...j->...", off, precision, off))
 
-    def draw(self, rng: np.random.Generator, members: int) -> FloatArray:
-        """Return an even number of members, shape (member, unknown), in pairs about the mean."""
-        half = rng.normal(size=(members // 2, self.mean.size))
+    def draw(self, rng: np.random.Generator, samples: int) -> FloatArray:
+        """Return an even number of samples, shape (sample, unknown), in pairs about the mean."""
+        half = rng.normal(size=(samples // 2, self.mean.size))
         spread = np.concatenate([half, -half]) @ np.linalg.cholesky(self.covariance).T
         return np.asarray(self.mean + spread)
 
@@ -101,7 +101,7 @@ class Unknowns:
         return potential_from_components(self.components(x), self.config.sites, x[..., -1])
 
     def wires(self, X: FloatArray, barrier: tuple[float, float]) -> list[Nanowire]:
-        """Return the wires that members (member, unknown) stand for."""
+        """Return the wires that samples (sample, unknown) stand for."""
         return [
             Nanowire(V, alpha=alpha, barrier=barrier, lead_mu=self.config.wire.lead_mu)
             for V, alpha in zip(self.potential(X), self.alpha(X), strict=True)

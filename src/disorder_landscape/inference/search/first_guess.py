@@ -19,7 +19,7 @@ WIDENING = 1.2
 
 
 def network_labels(model: TrainedModel, unknowns: Unknowns, G: FloatArray) -> FloatArray:
-    """Return the network's labels as unknowns, (member, unknown), for G (member, …, channel)."""
+    """Return the network's labels as unknowns, (sample, unknown), for G (sample, …, channel)."""
     Y = model.predict_labels(G.astype(np.float32))
     return unknowns.vector(dict(zip(model.labels.names, Y.T, strict=True)))
 

@@ -21,9 +21,9 @@ from disorder_landscape.model.parameters import FloatArray
 
 
 class Said(NamedTuple):
-    """Labels of members, shape (member, label), and of the measurement, shape (label,)."""
+    """Labels of samples, shape (sample, label), and of the measurement, shape (label,)."""
 
-    of_members: FloatArray
+    of_samples: FloatArray
     of_data: FloatArray
 
 
@@ -34,8 +34,8 @@ class Word:
     model: TrainedModel
     seen: Observation
 
-    def on_members(self, Y: FloatArray, rng: np.random.Generator) -> FloatArray:
-        """Return what it says of members' data (member, datum) if they had errors, too."""
+    def features_of_samples(self, Y: FloatArray, rng: np.random.Generator) -> FloatArray:
+        """Return what it says of samples' data (sample, datum) if they had errors, too."""
         return self._labels(Y + np.sqrt(self.seen.variance) * rng.normal(size=Y.shape))
 
     @cached_property

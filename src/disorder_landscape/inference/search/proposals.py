@@ -1,9 +1,9 @@
-"""Members of several proposals, weighted as if all were drawn from the last one.
+"""Samples of several proposals, weighted as if all were drawn from the last one.
 
 Where proposals change little from round to round, wires that earlier rounds have simulated teach
 the next one as well. Each counts with the ratio of the last proposal's density to that of the
 mixture of all (the deterministic mixture, or balance heuristic: Veach and Guibas, SIGGRAPH 1995;
-of adaptive importance sampling: Cornuet et al., Scand. J. Stat. 39, 798 (2012)), so that a member
+of adaptive importance sampling: Cornuet et al., Scand. J. Stat. 39, 798 (2012)), so that a sample
 counts more than one of the last proposal's own only where these are few.
 """
 
@@ -21,11 +21,11 @@ from disorder_landscape.inference.search.network_features import Said, Word
 from disorder_landscape.model.parameters import FloatArray
 
 LEAST_WEIGHT = 1e-3
-"""Members of less weight are not looked at."""
+"""Samples of less weight are not looked at."""
 
 
 class Weighted(NamedTuple):
-    """Members (member, unknown), what they show (member, datum), and weights (member,)."""
+    """Samples (sample, unknown), what they show (sample, datum), and weights (sample,)."""
 
     X: FloatArray
     Y: FloatArray
@@ -35,7 +35,7 @@ class Weighted(NamedTuple):
 
 
 class _Shown(NamedTuple):
-    """Data (member, datum) and the network's labels (member, label), of which there may be none."""
+    """Data (sample, datum) and the network's labels (sample, label), of which there may be none."""
 
     Y: FloatArray
     labels: FloatArray
@@ -43,7 +43,7 @@ class _Shown(NamedTuple):
 
 @dataclass(eq=False)
 class _Drawn:
-    """Members of one proposal; `shown` once they have been simulated."""
+    """Samples of one proposal; `shown` once they have been simulated."""
 
     proposal: Gaussian
     X: FloatArray
@@ -52,7 +52,7 @@ class _Drawn:
 
 
 @dataclass(eq=False)
-class Members:
+class ProposalSamples:
     """What has been drawn from proposal after proposal.
 
     Parameters
@@ -71,7 +71,7 @@ class Members:
     _drawn: list[_Drawn] = field(default_factory=list)
 
     def draw(self, proposal: Gaussian, count: int, rng: np.random.Generator) -> None:
-        """Draw so many members of the next proposal; they are simulated when they are needed."""
+        """Draw so many samples of the next proposal; they are simulated when they are needed."""
         root = np.linalg.cholesky(proposal.covariance)
         X = proposal.mean + rng.normal(size=(count, proposal.mean.size)) @ root.T
         self._drawn.append(_Drawn(proposal, X, rng))
@@ -79,7 +79,7 @@ class Members:
             self._drawn.pop(0)
 
     def weighted(self) -> Weighted:
-        """Return the members that count for the last proposal."""
+        """Return the samples that count for the last proposal."""
         count = np.array([len(drawn.X) for drawn in self._drawn])
         X = np.concatenate([drawn.X for drawn in self._drawn])
         mixture = log_mixture([(drawn.proposal, len(drawn.X)) for drawn in self._drawn], X)
@@ -99,19 +99,19 @@ class Members:
         if drawn.shown is None:
             Y = self.observation.simulate(drawn.X)
             nothing = np.empty((len(Y), 0))
-            labels = nothing if self.word is None else self.word.on_members(Y, drawn.rng)
+            labels = nothing if self.word is None else self.word.features_of_samples(Y, drawn.rng)
             drawn.shown = _Shown(Y, labels)
         return drawn.shown
 
 
 def log_mixture(drawn: Sequence[tuple[Gaussian, int]], X: FloatArray) -> FloatArray:
-    """Return the logarithm of the density of members drawn from several normal distributions.
+    """Return the logarithm of the density of samples drawn from several normal distributions.
 
     Parameters
     ----------
     drawn : sequence of (Gaussian, int)
-        The distributions, and how many members were drawn from each.
-    X : array, shape (member, unknown)
+        The distributions, and how many samples were drawn from each.
+    X : array, shape (sample, unknown)
     """
     count = np.array([number for _, number in drawn])
     log = np.array([log_density(gaussian, X) for gaussian, _ in drawn])
@@ -119,7 +119,7 @@ def log_mixture(drawn: Sequence[tuple[Gaussian, int]], X: FloatArray) -> FloatAr
 
 
 def log_density(gaussian: Gaussian, X: FloatArray) -> FloatArray:
-    """Return the logarithm of a normal density at X (member, unknown), shape (member,).
+    """Return the logarithm of a normal density at X (sample, unknown), shape (sample,).
 
     Up to the power of 2π.
     """

@@ -14,12 +14,12 @@ RIDGES = np.logspace(-1, 1.5, 6)
 
 
 def variance_about_lines(X: FloatArray, Y: FloatArray, weight: FloatArray) -> FloatArray:
-    """Return the variance (datum,) of Y (member, datum) about linear functions of X.
+    """Return the variance (datum,) of Y (sample, datum) about linear functions of X.
 
     Parameters
     ----------
-    X, Y : array, shapes (member, unknown) and (member, datum)
-    weight : array, shape (member,)
+    X, Y : array, shapes (sample, unknown) and (sample, datum)
+    weight : array, shape (sample,)
     """
     total, root = weight.sum(), np.sqrt(weight)[:, None]
     X, Y = X - weight @ X / total, Y - weight @ Y / total
@@ -37,10 +37,10 @@ def learn(
     weight: FloatArray,
     said: Said | None = None,
 ) -> tuple[FloatArray, FloatArray]:
-    """Learn what members z (member, unknown) are from what they show, Y (member, datum).
+    """Learn what samples z (sample, unknown) are from what they show, Y (sample, datum).
 
-    Ridge regression in the space of the members, on data in units of their noise and of what lines
-    leave of them, `left` (datum,). The members show no noise of their own: what the measurement's
+    Ridge regression in the space of the samples, on data in units of their noise and of what lines
+    leave of them, `left` (datum,). The samples show no noise of their own: what the measurement's
     does to the answer is known without drawing any. What a network says of them, and of the
     measurement, is regressed on as well, with as much weight as all data that lines leave as they
     are: far away it counts, near the answer hardly.
@@ -48,9 +48,9 @@ def learn(
     Parameters
     ----------
     observation : Observation
-    z, Y : array, shapes (member, unknown) and (member, datum)
+    z, Y : array, shapes (sample, unknown) and (sample, datum)
     left : array, shape (datum,)
-    weight : array, shape (member,)
+    weight : array, shape (sample,)
     said : Said, optional
 
     Returns
@@ -58,7 +58,7 @@ def learn(
     at : array, shape (unknown,)
         What the measurement's are.
     error : array, shape (unknown, unknown)
-        Mean product of the errors for members that were left out, and shown with noise.
+        Mean product of the errors for samples that were left out, and shown with noise.
     """
     total, root = weight.sum(), np.sqrt(weight)[:, None]
     middle, center = weight @ Y / total, weight @ z / total
@@ -67,11 +67,11 @@ def learn(
     of_noise = (A * (observation.variance / scale**2)) @ A.T
     kernel, shown = A @ A.T, A @ ((observation.data - middle) / scale)
     if said is not None:
-        mean = weight @ said.of_members / total
-        deviation = np.sqrt(weight @ (said.of_members - mean) ** 2 / total)
+        mean = weight @ said.of_samples / total
+        deviation = np.sqrt(weight @ (said.of_samples - mean) ** 2 / total)
         varies = deviation > 1e-6 * np.abs(mean)  # of one that does not, rounding is left
         unit = deviation[varies] * np.sqrt(mean.size / middle.size)
-        W = root * (said.of_members - mean)[:, varies] / unit
+        W = root * (said.of_samples - mean)[:, varies] / unit
         kernel, shown = kernel + W @ W.T, shown + W @ ((said.of_data - mean)[varies] / unit)
     values, vectors = np.linalg.eigh(kernel)
     along = vectors.T @ target
@@ -86,9 +86,9 @@ def learn(
 
 
 def sum_of_products(errors: FloatArray) -> FloatArray:
-    """Return the sum (unknown, unknown) of the products of members' errors (member, unknown).
+    """Return the sum (unknown, unknown) of the products of samples' errors (sample, unknown).
 
-    Its eigenvalues are farther apart than those of what it stands for, the mean over all members
+    Its eigenvalues are farther apart than those of what it stands for, the mean over all samples
     that could have been drawn: the direction that seems to be known best is so by chance. Drawn
     together as Ledoit and Wolf do (J. Multivar. Anal. 88, 365 (2004)), they lose no truth there.
     """

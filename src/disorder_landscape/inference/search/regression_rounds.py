@@ -4,7 +4,7 @@ The conductances are peaks of a few kT in the space of the unknowns: on the scal
 they are too rough for lines through them. But what the unknowns are can be learned from the
 conductances even so: as the network does for all wires, ridge regression does it for those that are
 drawn about the present answer, a few hundred (and those of earlier rounds, as far as they would
-have been drawn, `members`). Its error, by leaving out one wire at a time, says
+have been drawn, `samples`). Its error, by leaving out one wire at a time, says
 how far to trust it, and the next wires are drawn accordingly, until the conductances are straight
 lines over the answer's spread, which is where Gauss–Newton steps end it (`polish`). So a
 measurement leads from the network's guess, or from the disorder model's prior, to the answer.
@@ -13,8 +13,8 @@ This is sequential neural posterior estimation (Papamakarios and Murray, NIPS 20
 network: the wires of a round are drawn from a proposal, and what the regression learns from the
 data is put back upon the prior, so that no datum counts twice. The linear network is the gain of an
 ensemble Kalman filter (Evensen, Ocean Dynamics 53, 343 (2003)), in which data that lines through
-the members do not explain count little, and the error is not the filter's own, which is far too
-small, but that of members which were left out.
+the samples do not explain count little, and the error is not the filter's own, which is far too
+small, but that of samples which were left out.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from disorder_landscape.inference.problem.observation import Observation, overal
 from disorder_landscape.inference.problem.unknowns import Gaussian
 from disorder_landscape.inference.search.gauss_newton import laplace, linearise
 from disorder_landscape.inference.search.network_features import Word
-from disorder_landscape.inference.search.proposals import Members
+from disorder_landscape.inference.search.proposals import ProposalSamples
 from disorder_landscape.inference.search.regression import learn, variance_about_lines
 
 Recall = Callable[[str, Callable[[], dict[str, Any]]], dict[str, Any]]
@@ -41,15 +41,15 @@ Recall = Callable[[str, Callable[[], dict[str, Any]]], dict[str, Any]]
 class RoundSettings:
     """How the rounds go about it."""
 
-    members_per_unknown: float = 10.0
+    samples_per_unknown: float = 10.0
     """Wires that are simulated in each round, for each unknown, …"""
-    least_members: int = 100
+    least_samples: int = 100
     """… and of how many there are at least."""
     share: float = 0.25
     """Of the data, the same in all rounds until these are done, when they go on with all data: far
     closer, where there may be more than one optimum again, some deviations apart. …"""
-    members_on_all: float = 0.5
-    """… Then this part of the members is enough: so close by, lines explain nearly all."""
+    share_on_all_data: float = 0.5
+    """… Then this part of the samples is enough: so close by, lines explain nearly all."""
     nearly_noise: float = 2.0
     """Rounds go on with all data, too, where they stand still with less than this many times the
     noise unexplained: then it is the noise that hides the rest."""
@@ -57,7 +57,7 @@ class RoundSettings:
     """The next round's wires are drawn this much more widely than the answer says, …"""
     least_widening: float = 0.8
     most_widening: float = 4.0
-    """… and as much more, or less, as the data lie farther out than this round's members, or nearer
+    """… and as much more, or less, as the data lie farther out than this round's samples, or nearer
     to the middle; between these factors in variance."""
     least_shrinking: float = 0.35
     """A round makes no direction's deviation smaller than this part of what it was."""
@@ -75,12 +75,12 @@ class RoundSettings:
     """… or in so many where lines leave no more unexplained than was said."""
     rounds: int = 50
     most: int = 2000
-    """Members of this and of earlier rounds that are kept."""
+    """Samples of this and of earlier rounds that are kept."""
 
 
-WITH_WORD = RoundSettings(members_per_unknown=20.0, most=4000, wider=1.1)
+WITH_WORD = RoundSettings(samples_per_unknown=20.0, most=4000, wider=1.1)
 """Where a network's word on each wire is heard, which is where components are many. With twice the
-members the error of what they teach is known well enough to draw the next ones less widely."""
+samples the error of what they teach is known well enough to draw the next ones less widely."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,9 +89,9 @@ class Round:
 
     distribution: Gaussian
     misfit: float
-    """Root-mean-square difference of the data and the members' mean, in e²/h."""
+    """Root-mean-square difference of the data and the samples' mean, in e²/h."""
     unexplained: float
-    """Root-mean-square difference of the members and the lines, in units of the noise."""
+    """Root-mean-square difference of the samples and the lines, in units of the noise."""
     spread: float
     """The deviation of V in meV, root mean square over the sites."""
 
@@ -131,11 +131,11 @@ def rounds(
     least, narrowest, since = np.inf, np.inf, 0
     key = ".".join(map(str, seed))
     share, distribution = settings.share, start
-    count = max(settings.least_members, round(settings.members_per_unknown * start.mean.size))
-    members = _members(observation, share, seed, settings, word)
+    count = max(settings.least_samples, round(settings.samples_per_unknown * start.mean.size))
+    samples = _samples(observation, share, seed, settings, word)
     for number in range(settings.rounds):
-        members.draw(distribution, count, np.random.default_rng([*seed, number, 1]))
-        make = partial(_round, members, distribution, settings)
+        samples.draw(distribution, count, np.random.default_rng([*seed, number, 1]))
+        make = partial(_round, samples, distribution, settings)
         one = Round.from_dict(recall(f"round.{key}.{number}", make))
         yield one
         straight = one.unexplained < settings.unexplained
@@ -152,8 +152,8 @@ def rounds(
             if share == 1 or least > settings.nearly_noise:
                 return
             share, since, least, narrowest = 1.0, 0, np.inf, np.inf
-            count = round(settings.members_on_all * count)
-            members = _members(observation, share, seed, settings, word)
+            count = round(settings.share_on_all_data * count)
+            samples = _samples(observation, share, seed, settings, word)
         distribution = one.distribution
 
 
@@ -164,24 +164,24 @@ def _gauss_newton(observation: Observation, one: Round) -> dict[str, Any]:
     return {"spread": observation.unknowns.site_deviation(step.covariance)}
 
 
-def _members(
+def _samples(
     observation: Observation,
     share: float,
     seed: list[int],
     settings: RoundSettings,
     word: Word | None,
-) -> Members:
+) -> ProposalSamples:
     if word is not None and share < 1:
-        return Members(word.seen, settings.most, word)
+        return ProposalSamples(word.seen, settings.most, word)
     some = observation.on_some_lines(share, np.random.default_rng(seed))
-    return Members(some, settings.most)
+    return ProposalSamples(some, settings.most)
 
 
-def _round(members: Members, proposal: Gaussian, settings: RoundSettings) -> dict[str, Any]:
-    """Simulate the members, and regress the unknowns on what they show: `Round.to_dict`."""
-    observation = members.observation
+def _round(samples: ProposalSamples, proposal: Gaussian, settings: RoundSettings) -> dict[str, Any]:
+    """Simulate the samples, and regress the unknowns on what they show: `Round.to_dict`."""
+    observation = samples.observation
     unknowns, prior = observation.unknowns, observation.unknowns.prior
-    X, Y, weight, said = members.weighted()
+    X, Y, weight, said = samples.weighted()
     root = np.linalg.cholesky(proposal.covariance)
     z = np.linalg.solve(root, (X - proposal.mean).T).T
     left = variance_about_lines(z, Y, weight)
@@ -189,7 +189,7 @@ def _round(members: Members, proposal: Gaussian, settings: RoundSettings) -> dic
     share, directions = np.linalg.eigh(error)
     share = np.clip(share, settings.least_shrinking**2, 1 - 1e-3)
     error = (directions * share) @ directions.T
-    # members' own answers have the variance 1 − error: do the data lie as far out as these?
+    # samples' own answers have the variance 1 − error: do the data lie as far out as these?
     outside = (at**2).mean() / (1 - share).mean()
     widening = settings.wider**2 * float(
         np.clip(outside, settings.least_widening, settings.most_widening)
@@ -207,7 +207,7 @@ def _round(members: Members, proposal: Gaussian, settings: RoundSettings) -> dic
 
 
 def _upon_the_prior(learned: Gaussian, proposal: Gaussian, prior: Gaussian) -> Gaussian:
-    """Put what was learned about members of a proposal upon the prior instead."""
+    """Put what was learned about samples of a proposal upon the prior instead."""
     new, old, first = (np.linalg.inv(one.covariance) for one in (learned, proposal, prior))
     covariance = np.linalg.inv(first + new - old)
     mean = covariance @ (first @ prior.mean + new @ learned.mean - old @ proposal.mean)

@@ -11,8 +11,8 @@ from disorder_landscape.model.quantities import CONDUCTANCES
 SIGNIFICANCE = 0.05
 """Largest p-value of a prediction that passes."""
 UNLIKELY = 0.02
-"""Further data are no longer an inversion's if its members make such with no more probability."""
-LEAST_MEMBERS = round(1 / UNLIKELY) - 1
+"""Further data are no longer an inversion's if its samples make such with no more probability."""
+LEAST_SAMPLES = round(1 / UNLIKELY) - 1
 """So many can tell that."""
 LEAST_SIGNAL = 0.5
 """Part of the mismatch of wrong disorder that must not be noise in one channel at least."""
@@ -81,12 +81,12 @@ def _verdict(score: float, as_close: int, controls: int, p: float) -> str:
     )
 
 
-def of_members(p: float) -> str:
-    """Return what `predictive_p` of an inversion's members says; NaN is that of too few."""
+def of_samples(p: float) -> str:
+    """Return what `predictive_p` of an inversion's samples says; NaN is that of too few."""
     if np.isnan(p):
-        return f"Fewer than {LEAST_MEMBERS} members cannot say whether they make such data."
+        return f"Fewer than {LEAST_SAMPLES} samples cannot say whether they make such data."
     but = "do not make such data: its error bars, its model or the noise that is stated is wrong"
-    return f"Members of the inversion {'make such data' if p > UNLIKELY else but} (p = {p:.2g})."
+    return f"Samples of the inversion {'make such data' if p > UNLIKELY else but} (p = {p:.2g})."
 
 
 def table(result: xr.Dataset) -> list[str]:
@@ -106,6 +106,6 @@ def table(result: xr.Dataset) -> list[str]:
     noise = ", ".join(f"{one:g}" for one in np.unique(result["noise"]))
     lines.append(f"mean of V that fits best: {shift:g} µeV; noise: {noise} e²/h")
     lines.append(str(result.attrs["verdict"]))
-    if "p_members" in result:
-        lines.append(of_members(float(result["p_members"])))
+    if "p_samples" in result:
+        lines.append(of_samples(float(result["p_samples"])))
     return lines
