@@ -57,7 +57,7 @@ true = measured["true_potential"]
 for name, V in (("network", guess["potential"]), ("inversion", inferred["potential_mean"])):
     error = 1e3 * np.sqrt(((V - true) ** 2).mean())
     print(f"{name}: V off by {float(error):.2f} µeV, root mean square over the sites")
-own = 1e3 * np.sqrt((inferred["potential_deviation"] ** 2).mean())
+own = 1e3 * np.sqrt((inferred["potential_std"] ** 2).mean())
 print(f"error bar of the inversion: {float(own):.2f} µeV")
 
 # %%

@@ -284,9 +284,9 @@ def infer(
     if hint:
         print(hint, file=sys.stderr)
     unfinished = output.with_name(f"{output.name}.unfinished.json")
-    with resumable(), inference_progress() as told:
+    with resumable(), inference_progress() as progress:
         result = find(
-            measured, model, errors, not from_prior, samples, seed, None, unfinished, told
+            measured, model, errors, not from_prior, samples, seed, None, unfinished, progress
         )
     write_dataset(result, output, made_here(), may_lack=["misfit"])  # of channels without data
     if plot is not None:

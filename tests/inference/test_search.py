@@ -1,4 +1,4 @@
-"""Rounds, polish and Markov chain on problems whose posterior is known."""
+"""Regression rounds, Gauss–Newton steps and Markov chain on known posteriors."""
 
 from dataclasses import replace
 
@@ -8,24 +8,29 @@ from scipy.stats import kstest, multivariate_normal
 
 from disorder_landscape.inference.attempt import Attempt, chi_square_excess
 from disorder_landscape.inference.checkpoint import Checkpoint
-from disorder_landscape.inference.posterior.markov_chain import independence_chain, predictive_p
+from disorder_landscape.inference.posterior.markov_chain import independence_chain
+from disorder_landscape.inference.problem.gaussian import Gaussian, log_density
 from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
-from disorder_landscape.inference.problem.unknowns import Gaussian, Unknowns
+from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.search.gauss_newton import (
+    gauss_newton,
     laplace,
     linearise,
-    polish,
     precision_of,
 )
-from disorder_landscape.inference.search.network_features import Said
-from disorder_landscape.inference.search.proposals import ProposalSamples, log_density
+from disorder_landscape.inference.search.network_features import Features
+from disorder_landscape.inference.search.proposals import ProposalSamples
 from disorder_landscape.inference.search.regression import (
     RIDGES,
-    learn,
-    sum_of_products,
-    variance_about_lines,
+    error_covariance,
+    residual_variance,
+    ridge_regression,
 )
-from disorder_landscape.inference.search.regression_rounds import Round, RoundSettings, rounds
+from disorder_landscape.inference.search.regression_rounds import (
+    Round,
+    RoundSettings,
+    regression_rounds,
+)
 from disorder_landscape.inference.verdict import (
     CONVERGED,
     NOT_CONVERGED,
@@ -33,6 +38,7 @@ from disorder_landscape.inference.verdict import (
     same_answer,
     verdict,
 )
+from disorder_landscape.inference.verification.predictive import predictive_p
 from disorder_landscape.model.disorder import disorder_realization
 from linear_data import CONFIG, SIZE, UNKNOWNS, Linear, posterior
 
@@ -55,15 +61,15 @@ def test_rounds_lead_from_the_prior_to_the_truth(seed):
     truth = UNKNOWNS.prior.draw(rng, 2)[0]
     waves = Linear(np.zeros(40), slope / 3, bend=1.0)
     waves.data = waves.simulate(truth) + 0.01 * rng.normal(size=40)
-    found = list(rounds(waves, UNKNOWNS.prior, [0], SETTINGS))
+    found = list(regression_rounds(waves, UNKNOWNS.prior, [0], SETTINGS))
     assert found[0].unexplained > 50
     assert 1 < len(found) < SETTINGS.rounds
     last = found[-1]
     assert last.unexplained < SETTINGS.unexplained
     assert last.spread < 0.02 * found[0].spread
     assert last.distribution.squared_distance(truth) < 3 * SIZE
-    polished = polish(waves, last.distribution)
-    assert polished.squared_distance(truth) < 3 * SIZE
+    optimum = gauss_newton(waves, last.distribution)
+    assert optimum.squared_distance(truth) < 3 * SIZE
 
 
 @pytest.mark.parametrize("nearly_noise", [2.0, np.inf])
@@ -81,7 +87,7 @@ def test_rounds_that_lead_nowhere_end(linear, nearly_noise):
 
     waves = Waves(linear.data, linear.slope)
     settings = RoundSettings(patience=2, nearly_noise=nearly_noise)
-    found = list(rounds(waves, UNKNOWNS.prior, [0], settings))
+    found = list(regression_rounds(waves, UNKNOWNS.prior, [0], settings))
     assert len(found) < settings.rounds
     for values in ([one.unexplained for one in found], [one.spread / 0.95 for one in found]):
         assert min(values[-settings.patience :]) > min(values)
@@ -101,11 +107,11 @@ def test_rounds_go_on_as_long_as_they_know_less_than_a_step_would():
         settings = replace(
             SETTINGS, times_gauss_newton=near, unexplained=np.inf, patience_when_straight=patience
         )
-        found = list(rounds(waves, UNKNOWNS.prior, [0], settings))
+        found = list(regression_rounds(waves, UNKNOWNS.prior, [0], settings))
         counts[near, patience] = len(found)
         if near == 2.0:
             step = linearise(waves, found[-1].distribution)[1]
-            bar = UNKNOWNS.site_deviation(np.linalg.inv(precision_of(waves, step)))
+            bar = UNKNOWNS.site_std(np.linalg.inv(precision_of(waves, step)))
             assert found[-1].spread < 2.0 * bar
     assert counts[np.inf, 3] == 2  # one round on some data, one on all
     assert counts[np.inf, 3] < counts[2.0, 3] < counts[0.0, 3] < counts[0.0, 6] < 50
@@ -115,11 +121,11 @@ def test_rounds_on_lines_do_not_count_data_twice(linear):
     """They come no closer than the posterior, which is where the first of them cannot be yet."""
     exact = posterior(linear)
     settings = RoundSettings(unexplained=0.0, rounds=15, wider=1.0, least_widening=1.0)
-    *_, last = rounds(linear, UNKNOWNS.prior, [0], settings)
-    deviation, least = (np.sqrt(np.diag(one.covariance)) for one in (last.distribution, exact))
-    assert (deviation > 0.8 * least).all()
-    assert (deviation < 5 * least).all()
-    assert (abs(last.distribution.mean - exact.mean) < 4 * deviation).all()
+    *_, last = regression_rounds(linear, UNKNOWNS.prior, [0], settings)
+    std, least = (np.sqrt(np.diag(one.covariance)) for one in (last.distribution, exact))
+    assert (std > 0.8 * least).all()
+    assert (std < 5 * least).all()
+    assert (abs(last.distribution.mean - exact.mean) < 4 * std).all()
 
 
 def test_errors_of_the_regression_are_those_of_samples_it_has_not_seen(linear):
@@ -129,17 +135,17 @@ def test_errors_of_the_regression_are_those_of_samples_it_has_not_seen(linear):
     bent = Linear(linear.data, slope, bend=0.1, variance=np.full(40, 0.3**2))
     z = rng.normal(size=(300, SIZE))
     Y = bent.simulate(z)
-    left = variance_about_lines(z, Y, np.ones(300))
+    residual = residual_variance(z, Y, np.ones(300))
     found = []
     for true in rng.normal(size=(400, SIZE)):
         data = bent.simulate(true[None])[0] + 0.3 * rng.normal(size=40)
-        at, error = learn(replace(bent, data=data), z, Y, left, np.ones(300))
+        at, error = ridge_regression(replace(bent, data=data), z, Y, residual, np.ones(300))
         found.append(at - true)
     assert at.shape == (SIZE,)
     actual = np.array(found).T @ np.array(found) / len(found)
     assert 0.02 < np.trace(error) / SIZE < 0.5
     np.testing.assert_allclose(np.diag(actual), np.diag(error), rtol=0.3)
-    nothing = learn(bent, z, 1e-6 * Y, np.zeros(40), np.ones(300))[1]
+    nothing = ridge_regression(bent, z, 1e-6 * Y, np.zeros(40), np.ones(300))[1]
     np.testing.assert_allclose(nothing, np.eye(SIZE), atol=0.3)
 
 
@@ -149,8 +155,8 @@ def test_leaving_out_is_what_the_closed_form_says(linear):
     z, weight = rng.normal(size=(30, SIZE)), rng.uniform(0.2, 2.0, 30)
     Y = z @ linear.slope
     exact = replace(linear, variance=np.full(40, 1e-12))
-    left = np.full(40, 100.0)
-    error = learn(exact, z, Y, left, weight)[1]
+    residual = np.full(40, 100.0)
+    error = ridge_regression(exact, z, Y, residual, weight)[1]
 
     def without(ridge):
         errors = []
@@ -166,35 +172,39 @@ def test_leaving_out_is_what_the_closed_form_says(linear):
         return np.sqrt(weight / weight.sum())[:, None] * errors
 
     best = min((without(weight.sum() * ridge) for ridge in RIDGES), key=np.linalg.norm)
-    np.testing.assert_allclose(error, sum_of_products(best), rtol=1e-6, atol=1e-9)
+    np.testing.assert_allclose(error, error_covariance(best), rtol=1e-6, atol=1e-9)
 
 
 def test_no_direction_is_known_best_by_chance():
     """Errors alike in all directions are found so by few samples; others are told apart by many."""
     rng = np.random.default_rng(13)
     errors = rng.normal(size=(60, 12)) / np.sqrt(60)
-    raw, found = (np.linalg.eigvalsh(S) for S in (errors.T @ errors, sum_of_products(errors)))
+    raw, found = (np.linalg.eigvalsh(S) for S in (errors.T @ errors, error_covariance(errors)))
     assert raw[0] < 0.5
     assert 0.8 < found[0] <= found[-1] < 1.2
     assert found.sum() == pytest.approx(raw.sum())
     unlike = rng.normal(size=(2000, 12)) * np.geomspace(0.01, 1, 12) / np.sqrt(2000)
-    found = np.linalg.eigvalsh(sum_of_products(unlike))
+    found = np.linalg.eigvalsh(error_covariance(unlike))
     np.testing.assert_allclose(found, np.geomspace(0.01, 1, 12) ** 2, rtol=0.2, atol=2e-3)
 
 
-def test_a_networks_word_is_believed_as_far_as_it_is_right():
-    """Data that teach nothing, and labels with errors of half the samples' deviation."""
+def test_network_features_weigh_as_much_as_they_are_right():
+    """Data that teach nothing, and labels with errors of half the samples' σ."""
     rng = np.random.default_rng(12)
     z, Y, one = rng.normal(size=(300, SIZE)), rng.normal(size=(300, 40)), np.ones(300)
     nothing = Linear(np.zeros(40), np.zeros((SIZE, 40)))
     truth = rng.normal(size=(200, SIZE))
-    labels, heard = (x + 0.5 * rng.normal(size=x.shape) for x in (z, truth))
-    left = variance_about_lines(z, Y, one)
-    without = learn(nothing, z, Y, left, one)[1]
+    labels, predicted = (x + 0.5 * rng.normal(size=x.shape) for x in (z, truth))
+    residual = residual_variance(z, Y, one)
+    without = ridge_regression(nothing, z, Y, residual, one)[1]
     assert np.trace(without) / SIZE > 0.9
-    found = [learn(nothing, z, Y, left, one, Said(3 * labels, 3 * word)) for word in heard]
-    same = Said(np.column_stack([labels, one]), np.append(heard[0], 2.0))  # one label never varies
-    assert np.isfinite(learn(nothing, z, Y, left, one, same)[0]).all()
+    found = [
+        ridge_regression(nothing, z, Y, residual, one, Features(3 * labels, 3 * label))
+        for label in predicted
+    ]
+    constant = np.column_stack([labels, one])  # one label never varies
+    same = Features(constant, np.append(predicted[0], 2.0))
+    assert np.isfinite(ridge_regression(nothing, z, Y, residual, one, same)[0]).all()
     error = found[0][1]
     assert 0.2 < np.trace(error) / SIZE < 0.35  # 0.2 is Bayes' theorem's
     actual = np.array([at for at, _ in found]) - truth
@@ -220,8 +230,8 @@ def test_samples_of_earlier_proposals_count_as_if_drawn_from_the_last(linear):
     alone.draw(last, 600, rng)
     np.testing.assert_allclose(alone.weighted().weight, 1.0)
     simulated.clear()
-    X, Y, weight, said = samples.weighted()
-    assert said is None
+    X, Y, weight, features = samples.weighted()
+    assert features is None
     assert simulated == [666, 666]
     np.testing.assert_allclose(Y, X @ linear.slope)
     z = np.linalg.solve(np.linalg.cholesky(last.covariance), (X - last.mean).T).T
@@ -248,32 +258,32 @@ def test_weights_stand_for_samples(linear):
     Y = rng.normal(size=(20, 40))
     weight = np.bincount(twice).astype(float)
     total, one = weight.sum(), np.ones(twice.size)
-    left, of_all = variance_about_lines(z, Y, weight), variance_about_lines(z[twice], Y[twice], one)
+    residual, of_all = residual_variance(z, Y, weight), residual_variance(z[twice], Y[twice], one)
     effective = total**2 / (weight**2).sum()
     ratio = effective / (effective - 4) * (total - 4) / total
-    np.testing.assert_allclose(left, ratio * of_all)
-    at = learn(linear, z, Y, left, weight)[0]
-    np.testing.assert_allclose(at, learn(linear, z[twice], Y[twice], left, one)[0], atol=0.05)
+    np.testing.assert_allclose(residual, ratio * of_all)
+    at = ridge_regression(linear, z, Y, residual, weight)[0]
+    np.testing.assert_allclose(
+        at, ridge_regression(linear, z[twice], Y[twice], residual, one)[0], atol=0.05
+    )
 
 
 def test_lines_leave_nothing_of_lines():
     rng = np.random.default_rng(1)
     X, slope = rng.normal(size=(12, 3)), rng.normal(size=(3, 7))
-    np.testing.assert_allclose(
-        variance_about_lines(X, X @ slope + 2.0, np.ones(12)), 0.0, atol=1e-20
-    )
+    np.testing.assert_allclose(residual_variance(X, X @ slope + 2.0, np.ones(12)), 0.0, atol=1e-20)
     noisy = X @ slope + rng.normal(size=(12, 7))
-    assert variance_about_lines(X, noisy, np.ones(12)).mean() == pytest.approx(1.0, abs=0.5)
+    assert residual_variance(X, noisy, np.ones(12)).mean() == pytest.approx(1.0, abs=0.5)
 
 
-def test_polish_ends_at_the_posterior(linear):
+def test_gauss_newton_ends_at_the_posterior(linear):
     exact = posterior(linear)
-    found = polish(linear, Gaussian(exact.mean + 0.01, 1e-4 * np.eye(SIZE)))
+    found = gauss_newton(linear, Gaussian(exact.mean + 0.01, 1e-4 * np.eye(SIZE)))
     np.testing.assert_allclose(found.mean, exact.mean, rtol=1e-6, atol=1e-9)
     np.testing.assert_allclose(found.covariance, exact.covariance, rtol=1e-5, atol=1e-12)
 
 
-def test_polish_ends_with_slopes_of_its_own_width(linear):
+def test_gauss_newton_ends_with_slopes_of_its_own_width(linear):
     """From so wide a start that the first are others, even if it is at the optimum."""
     waves = replace(linear, bend=0.05)
     truth = Gaussian(UNKNOWNS.prior.mean, np.eye(SIZE))
@@ -282,14 +292,14 @@ def test_polish_ends_with_slopes_of_its_own_width(linear):
     wide, expected = (
         laplace(waves, truth.mean, linearise(waves, one)[1]) for one in (truth, narrow)
     )
-    found = polish(waves, truth)
+    found = gauss_newton(waves, truth)
     assert found.squared_distance(truth.mean) < 0.5
     apart = [abs(one.covariance / expected.covariance - 1).max() for one in (wide, found)]
     assert apart[0] > 0.3
     assert apart[1] < 0.05
 
 
-def test_polish_follows_a_valley_that_bends():
+def test_gauss_newton_follows_a_valley_that_bends():
     """On its floor, far from its end; steps as long as the tangent allows would not get there."""
     scale = np.sqrt(np.diag(UNKNOWNS.prior.covariance))
 
@@ -304,8 +314,8 @@ def test_polish_follows_a_valley_that_bends():
     floor = np.zeros(SIZE)
     floor[:2] = -1.5, 3.75
     start = Gaussian(UNKNOWNS.prior.mean + floor * scale, 1e-4 * np.diag(scale**2))
-    shown = valley.simulate(polish(valley, start).mean[None])[0]
-    assert ((shown - valley.data) ** 2 / valley.variance).sum() < 0.5
+    Y = valley.simulate(gauss_newton(valley, start).mean[None])[0]
+    assert ((Y - valley.data) ** 2 / valley.variance).sum() < 0.5
 
 
 def test_slopes_are_the_derivatives(linear):
@@ -351,14 +361,14 @@ def test_the_prior_is_the_disorder_models():
     assert UNKNOWNS.prior.mean[3] == pytest.approx(8.0)
 
 
-def test_deviations_of_the_potential_need_no_potential():
+def test_the_potentials_std_needs_no_potential():
     rng = np.random.default_rng(4)
     one, other = UNKNOWNS.prior.draw(rng, 2)
     apart = UNKNOWNS.potential(one) - UNKNOWNS.potential(other)
     assert UNKNOWNS.site_distance(one, other) == pytest.approx(np.sqrt((apart**2).mean()))
     X = UNKNOWNS.prior.draw(rng, 20_000)
     spread = np.sqrt(UNKNOWNS.potential(X).var(axis=0).mean())
-    assert UNKNOWNS.site_deviation(UNKNOWNS.prior.covariance) == pytest.approx(spread, rel=0.02)
+    assert UNKNOWNS.site_std(UNKNOWNS.prior.covariance) == pytest.approx(spread, rel=0.02)
     wire = UNKNOWNS.wires(one[None], (1.0, 2.0))[0]
     np.testing.assert_array_equal(wire.potential, UNKNOWNS.potential(one))
     assert (wire.alpha, wire.barrier) == (UNKNOWNS.alpha(one), (1.0, 2.0))
@@ -374,17 +384,17 @@ def test_names_and_vectors():
 
 
 def test_rounds_and_checkpoints_survive_json(linear, tmp_path):
-    one = next(iter(rounds(linear, UNKNOWNS.prior, [0], SETTINGS)))
+    one = next(iter(regression_rounds(linear, UNKNOWNS.prior, [0], SETTINGS)))
     path = tmp_path / "notes.json"
     notes = Checkpoint(path, b"run")
-    notes.recall("round", one.to_dict)
+    notes.cached("round", one.to_dict)
     again = Checkpoint(path, b"run")
     assert len(again) == 1
-    read = Round.from_dict(again.recall("round", lambda: pytest.fail("calculated again")))
+    read = Round.from_dict(again.cached("round", lambda: pytest.fail("calculated again")))
     np.testing.assert_array_equal(read.distribution.covariance, one.distribution.covariance)
     other = Checkpoint(path, b"another run")
     assert len(other) == 0
-    other.recall("round", one.to_dict)
+    other.cached("round", one.to_dict)
     assert [len(Checkpoint(path, run)) for run in (b"run", b"another run")] == [1, 1]
 
 
@@ -413,7 +423,7 @@ def test_answers_that_are_equally_bad_say_that_the_model_is(linear, misfits, exp
     noisy = replace(linear, variance=np.full(40, 1.0))
     attempts = [
         Attempt(
-            last=UNKNOWNS.prior,
+            last_proposal=UNKNOWNS.prior,
             answer=Gaussian(far * np.ones(SIZE), 1e-6 * np.eye(SIZE)),
             data=noisy.data + misfit,
             objective=40 * misfit**2,

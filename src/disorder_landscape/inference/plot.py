@@ -1,4 +1,4 @@
-"""A picture of what `infer` has found."""
+"""A figure of what `infer` has found."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import xarray as xr
 
 from disorder_landscape.files import replacing
 from disorder_landscape.inference.problem.measurement import Measurement
-from disorder_landscape.inference.report import alpha_with_deviation, error_bar
+from disorder_landscape.inference.report import alpha_with_std, error_bar
 from disorder_landscape.inference.verdict import CONVERGED
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.model.quantities import CONDUCTANCES
@@ -52,14 +52,14 @@ def plot_inference(result: xr.Dataset, measurement: Measurement, path: Path) -> 
         panels = figure.subplot_mosaic(
             [
                 ["V"] * 4,
-                ["deviation"] * 4,
+                ["std"] * 4,
                 ["c", "c", "misfit", "misfit"],
                 ["measured", "explained", "T", "P"],
             ],
             height_ratios=(1.0, 0.6, 0.9, 1.3),
         )
         _potential(panels["V"], result)
-        _deviation(panels["deviation"], result)
+        _potential_std(panels["std"], result)
         _components(panels["c"], result)
         _misfit(panels["misfit"], result)
         _conductances(figure, panels["measured"], panels["explained"], result, measurement)
@@ -77,10 +77,10 @@ def _potential(panel: Any, result: xr.Dataset) -> None:
     panel.plot(site, V, "k", lw=0.8)
     panel.set(ylabel=r"$V_\mathrm{dis}$ [meV]", xlim=(site[0], site[-1]))
     panel.tick_params(labelbottom=False)
-    panel.set_title("mean of the samples")
+    panel.set_title("mean of the posterior")
 
 
-def _deviation(panel: Any, result: xr.Dataset) -> None:
+def _potential_std(panel: Any, result: xr.Dataset) -> None:
     """Show the samples' intervals about their mean, which V's own scale would hide."""
     off = 1e3 * (result["potential"] - result["potential_mean"]).to_numpy()
     site = result["site"].to_numpy()
@@ -97,11 +97,11 @@ def _deviation(panel: Any, result: xr.Dataset) -> None:
 
 
 def _components(panel: Any, result: xr.Dataset) -> None:
-    c, bar = result["components_mean"], result["components_deviation"]
+    c, bar = result["components_mean"], result["components_std"]
     panel.errorbar(result["component"], c, bar, fmt="k.", capsize=2, lw=0.8)
     panel.axhline(0.0, color="0.7", lw=0.5)
     panel.set(xlabel="component $n$", ylabel="$c_n$ [meV]")
-    panel.set_title(rf"$\alpha$ = {alpha_with_deviation(result)}")
+    panel.set_title(rf"$\alpha$ = {alpha_with_std(result)}")
 
 
 def _misfit(panel: Any, result: xr.Dataset) -> None:

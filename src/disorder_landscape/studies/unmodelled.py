@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from disorder_landscape.dataset.realizations import realization
-from disorder_landscape.inference.posterior.markov_chain import predictive_p
 from disorder_landscape.inference.problem.measurement import (
     Measurement,
     empty_measurement,
@@ -20,6 +19,7 @@ from disorder_landscape.inference.problem.measurement import (
 )
 from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
 from disorder_landscape.inference.problem.unknowns import Unknowns
+from disorder_landscape.inference.verification.predictive import predictive_p
 from disorder_landscape.model.parameters import FloatArray, Nanowire
 from disorder_landscape.studies.inversions import SEED, inverted, measured, network_of, rounded
 

@@ -1,13 +1,14 @@
-"""Samples of a posterior that is wider than conductances are straight: importance sampling.
+"""Samples of a posterior that is no normal distribution: importance sampling.
 
 Where the noise hides much, the posterior is as wide as a peak of the conductances or wider. Then it
-is no normal distribution about one optimum: it bends, and has valleys beside valleys. But there the
-answers of rounds and polishes are nearly as wide, so that samples of these, weighted with the exact
-posterior, are samples of the posterior. If few of them have most of the weight, the next samples
-are drawn from a normal distribution with the moments of the weighted ones, and so on; all count, as
-if drawn from the mixture of all proposals (adaptive multiple importance sampling: Cornuet et al.,
-Scand. J. Stat. 39, 798 (2012)). As long as a few samples have all the weight, their weights are
-raised to a power below one (Koblents and Míguez, Stat. Comput. 25, 407 (2015)).
+is no normal distribution about one optimum. It bends, and has several maxima. But there the
+distributions with which rounds and Gauss–Newton steps end are nearly as wide as it is. So samples
+of these, weighted with the exact posterior, are samples of the posterior. If few of them have most
+of the weight, the next samples are drawn from a normal distribution with the weighted mean and
+covariance, and so on. All samples count, as if drawn from the mixture of all proposals (adaptive
+multiple importance sampling: Cornuet et al., Scand. J. Stat. 39, 798 (2012)). As long as a few
+samples have all the weight, the weights are tempered: raised to a power below one (Koblents and
+Míguez, Stat. Comput. 25, 407 (2015)).
 """
 
 from __future__ import annotations
@@ -20,60 +21,61 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
+from disorder_landscape.inference.checkpoint import Cache, uncached
+from disorder_landscape.inference.problem.gaussian import Gaussian, log_mixture
 from disorder_landscape.inference.problem.observation import Observation, objective, overall_misfit
-from disorder_landscape.inference.problem.unknowns import Gaussian
-from disorder_landscape.inference.search.proposals import log_mixture
-from disorder_landscape.inference.search.regression_rounds import Recall
 from disorder_landscape.model.parameters import FloatArray
 
 AT_A_TIME = 128
 """Samples that are drawn before the next proposal is made, at least, …"""
 PER_UNKNOWN = 12
 """… and for each unknown."""
-WORTH = 150.0
-"""Done when the samples are worth so many independent ones, …"""
-WORTH_PER_UNKNOWN = 12.0
-"""… and for each unknown, or …"""
+ENOUGH = 150.0
+"""The effective sample size at which it ends, at least, …"""
+ENOUGH_PER_UNKNOWN = 12.0
+"""… and for each unknown, …"""
 ITERATIONS = 10
-"""… after so many iterations."""
+"""… unless so many iterations have not been enough."""
 LEAST_SHARE = 0.25
-"""Of the samples that are drawn at a time: what those that the next proposal comes from must be
-worth."""
+"""The weights from which the next proposal is made are tempered until the effective sample size is
+this share of the samples that are drawn at a time."""
 KEPT = 0.3
-"""Proposals are drawn from again whose samples are worth this part of their number. Those that have
-been fitted to few samples miss what these miss: with each fitted to those before, populations of a
-normal posterior of eleven unknowns were too narrow by 4 %, and are right within 1 % now."""
+"""Proposals are drawn from again if the effective sample size is this share of the samples.
+Proposals that are fitted to few samples miss the regions that these miss. With each fitted to those
+before, the samples of a normal posterior of eleven unknowns were too narrow by 4 %; like this they
+are right within 1 %."""
 WIDER = 1.2
-"""Samples are drawn this much more widely than weighted ones lie, or an answer says."""
+"""Proposals have this many times the standard deviation of the weighted samples, or of an
+answer."""
 
 
 @dataclass(frozen=True, eq=False)
-class Population:
+class ImportanceSamples:
     """Samples (sample, unknown), and weights (sample,) whose sum is one."""
 
     samples: FloatArray
     weight: FloatArray
     power: float = 1.0
-    """To which the weights were raised: where it is less, the samples are of a wider distribution
-    than the posterior."""
+    """To which the weights are raised. If it is less than one, the samples are those of a wider
+    distribution than the posterior."""
 
     @property
-    def worth(self) -> float:
-        """How many independent samples these are worth."""
+    def effective_sample_size(self) -> float:
+        """As many independent samples have the same variance (Kish): 1 / Σ weight²."""
         return float(1 / (self.weight**2).sum())
 
     @property
     def is_enough(self) -> bool:
         """Whether these are samples of the posterior, and as many as are needed."""
-        needed = max(WORTH, WORTH_PER_UNKNOWN * self.samples.shape[1])
-        return self.power == 1 and self.worth >= needed
+        needed = max(ENOUGH, ENOUGH_PER_UNKNOWN * self.samples.shape[1])
+        return self.power == 1 and self.effective_sample_size >= needed
 
     @property
     def moments(self) -> Gaussian:
         """The normal distribution of the same mean and covariance."""
         mean = self.weight @ self.samples
         off = self.samples - mean
-        covariance = (off.T * self.weight) @ off / (1 - 1 / self.worth)
+        covariance = (off.T * self.weight) @ off / (1 - 1 / self.effective_sample_size)
         return Gaussian(mean, (covariance + covariance.T) / 2)
 
     def draw(self, rng: np.random.Generator, count: int) -> FloatArray:
@@ -83,13 +85,13 @@ class Population:
         return self.samples[at]
 
 
-def population(
+def importance_sampling(
     observation: Observation,
     proposals: Sequence[Gaussian],
     seed: Sequence[int],
-    recall: Recall = lambda name, calculate: calculate(),
-    told: Callable[[int, float, float], None] = lambda number, misfit, spread: None,
-) -> Population:
+    cache: Cache = uncached,
+    progress: Callable[[int, float, float], None] = lambda number, misfit, spread: None,
+) -> ImportanceSamples:
     """Draw samples of the posterior, or of a wider one if these are too few for that (`power`).
 
     Parameters
@@ -98,11 +100,11 @@ def population(
     proposals : sequence of Gaussian
         Where the first samples come from, which must be about as wide as the posterior.
     seed : sequence of int
-    recall : callable, optional
-        `Checkpoint.recall`.
-    told : callable, optional
-        Told the number of each iteration, the root-mean-square misfit of its best sample in e²/h
-        and the deviation of V in meV.
+    cache : callable, optional
+        `Checkpoint.cached`.
+    progress : callable, optional
+        Called after each iteration, with its number, the root-mean-square misfit of the most
+        probable sample in e²/h and the standard deviation of V in meV.
     """
     unknowns = observation.unknowns
     count = max(AT_A_TIME, PER_UNKNOWN * len(unknowns.names))
@@ -113,15 +115,15 @@ def population(
         each = 2 * -(-count // (2 * len(proposals)))
         drawn += [(proposal, each) for proposal in proposals]
         new = np.concatenate([proposal.draw(rng, each) for proposal in proposals])
-        name = f"population.{'.'.join(map(str, seed))}.{number}"
-        shown = recall(name, partial(_shown, observation, new))
-        X, height = np.concatenate([X, new]), np.append(height, shown["height"])
-        found = tamed(X, -0.5 * height - log_mixture(drawn, X), LEAST_SHARE * count)
+        name = f"importance_sampling.{'.'.join(map(str, seed))}.{number}"
+        simulated = cache(name, partial(_simulated, observation, new))
+        X, height = np.concatenate([X, new]), np.append(height, simulated["height"])
+        found = tempered(X, -0.5 * height - log_mixture(drawn, X), LEAST_SHARE * count)
         moments = found.moments
-        told(number, shown["misfit"], unknowns.site_deviation(moments.covariance))
+        progress(number, simulated["misfit"], unknowns.site_std(moments.covariance))
         if found.is_enough:
             break
-        if found.worth < KEPT * len(X):
+        if found.effective_sample_size < KEPT * len(X):
             proposals = [widened(moments)]
     return found
 
@@ -131,7 +133,8 @@ def widened(answer: Gaussian) -> Gaussian:
     return Gaussian(answer.mean, WIDER**2 * answer.covariance)
 
 
-def _shown(observation: Observation, X: FloatArray) -> dict[str, Any]:
+def _simulated(observation: Observation, X: FloatArray) -> dict[str, Any]:
+    """Return the `height` of samples, −2 log of the posterior density, and the least `misfit`."""
     Y = observation.simulate(X)
     height = objective(observation, X, Y)
     return {
@@ -140,14 +143,19 @@ def _shown(observation: Observation, X: FloatArray) -> dict[str, Any]:
     }
 
 
-def tamed(X: FloatArray, log_weight: FloatArray, worth: float) -> Population:
-    """Return samples with weights to the highest power up to one that leaves them this worth."""
+def tempered(X: FloatArray, log_weight: FloatArray, least: float) -> ImportanceSamples:
+    """Return samples with weights to the largest power that leaves this effective sample size.
 
-    def to_the(power: float) -> Population:
+    The power is one if the weights themselves have it.
+    """
+
+    def to_the(power: float) -> ImportanceSamples:
         weight = np.exp(power * (log_weight - log_weight.max()))
-        return Population(X, weight / weight.sum(), power)
+        return ImportanceSamples(X, weight / weight.sum(), power)
 
     whole = to_the(1.0)
-    if whole.worth >= worth:
+    if whole.effective_sample_size >= least:
         return whole
-    return to_the(float(brentq(lambda power: to_the(power).worth - worth, 0.0, 1.0)))
+    return to_the(
+        float(brentq(lambda power: to_the(power).effective_sample_size - least, 0.0, 1.0))
+    )

@@ -1,4 +1,4 @@
-"""Ridge regression of the unknowns on the data, and how far it is off."""
+"""Ridge regression of the unknowns on the data, and its error."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ import numpy as np
 from sklearn.covariance import ledoit_wolf
 
 from disorder_landscape.inference.problem.observation import Observation
-from disorder_landscape.inference.search.network_features import Said
+from disorder_landscape.inference.search.network_features import Features
 from disorder_landscape.model.parameters import FloatArray
 
 RIDGES = np.logspace(-1, 1.5, 6)
-"""Strengths of the ridge to choose from, in units of the noise and of what lines leave."""
+"""Strengths of the ridge to choose from; the data are in units of their noise and residual."""
 
 
-def variance_about_lines(X: FloatArray, Y: FloatArray, weight: FloatArray) -> FloatArray:
-    """Return the variance (datum,) of Y (sample, datum) about linear functions of X.
+def residual_variance(X: FloatArray, Y: FloatArray, weight: FloatArray) -> FloatArray:
+    """Return the variance (datum,) of the residuals of a linear fit of Y (sample, datum) to X.
 
     Parameters
     ----------
@@ -24,55 +24,58 @@ def variance_about_lines(X: FloatArray, Y: FloatArray, weight: FloatArray) -> Fl
     total, root = weight.sum(), np.sqrt(weight)[:, None]
     X, Y = X - weight @ X / total, Y - weight @ Y / total
     slope = np.linalg.lstsq(root * X, root * Y, rcond=None)[0]
-    left = weight @ (Y - X @ slope) ** 2 / total
+    residual = weight @ (Y - X @ slope) ** 2 / total
     effective = total**2 / (weight**2).sum()
-    return np.asarray(left * effective / max(1.0, effective - X.shape[1] - 1))
+    return np.asarray(residual * effective / max(1.0, effective - X.shape[1] - 1))
 
 
-def learn(
+def ridge_regression(
     observation: Observation,
     z: FloatArray,
     Y: FloatArray,
-    left: FloatArray,
+    residual: FloatArray,
     weight: FloatArray,
-    said: Said | None = None,
+    features: Features | None = None,
 ) -> tuple[FloatArray, FloatArray]:
-    """Learn what samples z (sample, unknown) are from what they show, Y (sample, datum).
+    """Regress the unknowns z of samples on their data Y, and predict those of the measurement.
 
-    Ridge regression in the space of the samples, on data in units of their noise and of what lines
-    leave of them, `left` (datum,). The samples show no noise of their own: what the measurement's
-    does to the answer is known without drawing any. What a network says of them, and of the
-    measurement, is regressed on as well, with as much weight as all data that lines leave as they
-    are: far away it counts, near the answer hardly.
+    The data are in units of their noise and of the `residual` of a linear fit to them. The
+    regression is done in the space of the samples, which are fewer than the data. The samples' data
+    have no noise. What the noise of the measurement does to the prediction is added in closed form.
+
+    Features from a network are regressed on as well. Together they weigh as much as all data do
+    where a linear fit explains nothing. So they matter far from the answer, and hardly near it.
 
     Parameters
     ----------
     observation : Observation
     z, Y : array, shapes (sample, unknown) and (sample, datum)
-    left : array, shape (datum,)
+    residual : array, shape (datum,)
+        `residual_variance` of the data.
     weight : array, shape (sample,)
-    said : Said, optional
+    features : Features, optional
 
     Returns
     -------
-    at : array, shape (unknown,)
-        What the measurement's are.
+    predicted : array, shape (unknown,)
+        The unknowns of the measurement.
     error : array, shape (unknown, unknown)
-        Mean product of the errors for samples that were left out, and shown with noise.
+        Mean product of the errors for samples that are left out of the regression, with noise.
     """
     total, root = weight.sum(), np.sqrt(weight)[:, None]
-    middle, center = weight @ Y / total, weight @ z / total
-    scale = np.sqrt(observation.variance + left)
-    A, target = root * (Y - middle) / scale, root * (z - center)
+    mean_of_Y, center = weight @ Y / total, weight @ z / total
+    scale = np.sqrt(observation.variance + residual)
+    A, target = root * (Y - mean_of_Y) / scale, root * (z - center)
     of_noise = (A * (observation.variance / scale**2)) @ A.T
-    kernel, shown = A @ A.T, A @ ((observation.data - middle) / scale)
-    if said is not None:
-        mean = weight @ said.of_samples / total
-        deviation = np.sqrt(weight @ (said.of_samples - mean) ** 2 / total)
-        varies = deviation > 1e-6 * np.abs(mean)  # of one that does not, rounding is left
-        unit = deviation[varies] * np.sqrt(mean.size / middle.size)
-        W = root * (said.of_samples - mean)[:, varies] / unit
-        kernel, shown = kernel + W @ W.T, shown + W @ ((said.of_data - mean)[varies] / unit)
+    kernel, of_data = A @ A.T, A @ ((observation.data - mean_of_Y) / scale)
+    if features is not None:
+        mean = weight @ features.of_samples / total
+        std = np.sqrt(weight @ (features.of_samples - mean) ** 2 / total)
+        varies = std > 1e-6 * np.abs(mean)  # a constant feature is left with rounding errors
+        unit = std[varies] * np.sqrt(mean.size / mean_of_Y.size)
+        W = root * (features.of_samples - mean)[:, varies] / unit
+        kernel = kernel + W @ W.T
+        of_data = of_data + W @ ((features.of_data - mean)[varies] / unit)
     values, vectors = np.linalg.eigh(kernel)
     along = vectors.T @ target
     found: list[tuple[FloatArray, FloatArray, FloatArray]] = []
@@ -82,14 +85,14 @@ def learn(
         left_out = ridge * slope / own[:, None]
         found.append((slope, left_out / np.sqrt(total), slope.T @ of_noise @ slope))
     slope, left_out, noise = min(found, key=lambda one: (one[1] ** 2).sum() + np.trace(one[2]))
-    return np.asarray(center + shown @ slope), sum_of_products(left_out) + noise
+    return np.asarray(center + of_data @ slope), error_covariance(left_out) + noise
 
 
-def sum_of_products(errors: FloatArray) -> FloatArray:
+def error_covariance(errors: FloatArray) -> FloatArray:
     """Return the sum (unknown, unknown) of the products of samples' errors (sample, unknown).
 
-    Its eigenvalues are farther apart than those of what it stands for, the mean over all samples
-    that could have been drawn: the direction that seems to be known best is so by chance. Drawn
-    together as Ledoit and Wolf do (J. Multivar. Anal. 88, 365 (2004)), they lose no truth there.
+    Of few samples the eigenvalues are farther apart than those of the true covariance: the smallest
+    is too small by chance, and with it the error of the direction that seems to be known best.
+    Shrinkage after Ledoit and Wolf (J. Multivar. Anal. 88, 365 (2004)) corrects that.
     """
     return np.asarray(ledoit_wolf(np.sqrt(len(errors)) * errors, assume_centered=True)[0])
