@@ -1,8 +1,8 @@
 """Our search beside a library's ES-MDA, from the same starts: errors and seconds.
 
-The library is iterative_ensemble_smoother, with 160 members and eight steps, each with half of the
-inflation of the one before. Writes smoothers.csv, a row per wire. What is there is not repeated: an
-interrupted run goes on. Example: python claims/smoothers.py --wires 2
+The library is iterative_ensemble_smoother, with an ensemble of 160 and eight steps, each with half
+of the inflation of the one before. Writes smoothers.csv, a row per wire. What is there is not
+repeated: an interrupted run goes on. Example: python claims/smoothers.py --wires 2
 """
 
 from __future__ import annotations
@@ -27,15 +27,15 @@ from disorder_landscape.studies.inversions import (
     rounded,
 )
 
-MEMBERS, STEPS, RATIO = 160, 8, 2.0
+ENSEMBLE, STEPS, RATIO = 160, 8, 2.0
 TRUNCATION = 0.999
 """Part of the singular values' sum that the library keeps."""
 COMMAND = "python claims/smoothers.py"
 
 
 def library(observation: Observation, start: Gaussian, seed: int) -> tuple[FloatArray, float]:
-    """Return the mean of ES-MDA's members in the end, and their standard deviation of V."""
-    X = start.draw(np.random.default_rng(seed), MEMBERS)
+    """Return the mean of ES-MDA's last ensemble, and its standard deviation of V."""
+    X = start.draw(np.random.default_rng(seed), ENSEMBLE)
     smoother = ESMDA(
         covariance=observation.variance,
         observations=observation.data,

@@ -20,7 +20,7 @@ class Measured:
 
 @dataclass
 class Linear:
-    """What an `Observation` is to rounds, polish and populations."""
+    """What the search and importance sampling need of an `Observation`."""
 
     data: np.ndarray
     slope: np.ndarray

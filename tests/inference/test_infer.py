@@ -198,6 +198,20 @@ def test_an_interrupted_run_goes_on(measured, inferred, tmp_path):
     assert result.identical(inferred)
 
 
+def test_a_checkpoint_of_an_older_version_is_ignored(measured, inferred, tmp_path):
+    """Its settings had other names, so that its fingerprint differs; it stays in the file."""
+    wide = {"mean": [0.0] * 4, "covariance": np.eye(4).tolist()}
+    old = {"polish.0": wide, "near.0.0.3": {"spread": 0.001}}
+    old["round.0.0.0"] = {"distribution": wide, "misfit": 1.0, "unexplained": 9.0, "spread": 0.1}
+    checkpoint = tmp_path / "unfinished.json"
+    checkpoint.write_text(json.dumps({64 * "0": old}))
+    assert infer(measured, checkpoint=checkpoint).identical(inferred)
+    runs = json.loads(checkpoint.read_text())
+    assert runs.pop(64 * "0") == old
+    (new,) = runs.values()
+    assert "gauss_newton.0" in new
+
+
 def test_a_run_with_another_network_starts_anew(measured, tmp_path):
     checkpoint = tmp_path / "unfinished.json"
     network = small_network(6)

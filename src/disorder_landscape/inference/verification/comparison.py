@@ -84,9 +84,11 @@ def _verdict(score: float, as_close: int, controls: int, p: float) -> str:
 def of_samples(p: float) -> str:
     """Return what `predictive_p` of an inversion's samples means; NaN is that of too few."""
     if np.isnan(p):
-        return f"Fewer than {LEAST_SAMPLES} samples cannot say whether they make such data."
-    but = "do not make such data: its error bars, its model or the noise that is stated is wrong"
-    return f"The posterior's samples {'make such data' if p > UNLIKELY else but} (p = {p:.2g})."
+        return f"Fewer than {LEAST_SAMPLES} samples cannot say if the posterior predicts the data."
+    but = "does not predict these data: its error bars, its model or the stated noise is wrong"
+    return (
+        f"The posterior {'predicts these data' if p > UNLIKELY else but} (predictive p = {p:.2g})."
+    )
 
 
 def table(result: xr.Dataset) -> list[str]:
