@@ -249,7 +249,7 @@ def infer(
     samples: Annotated[
         int, typer.Option(help="Samples of the posterior that are written, an even number.")
     ] = 64,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of the ensembles.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of all random numbers.")] = 0,
     plot: Annotated[Path | None, typer.Option(help="Picture of the result.")] = None,
 ) -> None:
     """Find the disorder that explains a measurement, with error bars and a verdict.

@@ -234,11 +234,12 @@ def checked(
     except ValidationError as error:
         first = error.errors()[0]
         key = ".".join(str(part) for part in first["loc"]) or "the file"
-        said = {
+        messages = {
             "extra_forbidden": "it has the unknown key {key}",
             "missing": "it lacks the key {key}",
-        }.get(first["type"], "{key} is wrong: {message}")
-        but = said.format(key=key, message=first["msg"].removeprefix("Value error, "))
+        }
+        message = messages.get(first["type"], "{key} is wrong: {message}")
+        but = message.format(key=key, message=first["msg"].removeprefix("Value error, "))
         raise ArgumentError(name, f"describe a run ('{path}')", but) from None
 
 

@@ -1,20 +1,14 @@
-"""Regression rounds, Gauss–Newton steps and Markov chain on known posteriors."""
+"""Regression rounds lead from the prior to posteriors that are known."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.stats import kstest, multivariate_normal
 
-from disorder_landscape.inference.attempt import Attempt, chi_square_excess
 from disorder_landscape.inference.checkpoint import Checkpoint
-from disorder_landscape.inference.posterior.markov_chain import independence_chain
-from disorder_landscape.inference.problem.gaussian import Gaussian, log_density
-from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
-from disorder_landscape.inference.problem.unknowns import Unknowns
+from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.search.gauss_newton import (
     gauss_newton,
-    laplace,
     linearise,
     precision_of,
 )
@@ -31,26 +25,9 @@ from disorder_landscape.inference.search.regression_rounds import (
     RoundSettings,
     regression_rounds,
 )
-from disorder_landscape.inference.verdict import (
-    CONVERGED,
-    NOT_CONVERGED,
-    NOT_DESCRIBED,
-    same_answer,
-    verdict,
-)
-from disorder_landscape.inference.verification.predictive import predictive_p
-from disorder_landscape.model.disorder import disorder_realization
-from linear_data import CONFIG, SIZE, UNKNOWNS, Linear, posterior
+from linear_data import SIZE, UNKNOWNS, Linear, posterior
 
 SETTINGS = RoundSettings()
-
-
-@pytest.fixture(scope="module")
-def linear():
-    rng = np.random.default_rng(0)
-    slope = rng.normal(size=(SIZE, 40))
-    truth = UNKNOWNS.prior.draw(rng, 2)[0]
-    return Linear(truth @ slope + 0.01 * rng.normal(size=40), slope)
 
 
 @pytest.mark.parametrize("seed", [0, 1, 2, 3])
@@ -243,14 +220,6 @@ def test_samples_of_earlier_proposals_count_as_if_drawn_from_the_last(linear):
     assert simulated == [666, 666, 10]
 
 
-def test_densities_are_scipys():
-    X = UNKNOWNS.prior.draw(np.random.default_rng(11), 6)
-    prior = UNKNOWNS.prior
-    expected = multivariate_normal(prior.mean, prior.covariance).logpdf(X)
-    found = log_density(prior, X) - SIZE / 2 * np.log(2 * np.pi)
-    np.testing.assert_allclose(found, expected)
-
-
 def test_weights_stand_for_samples(linear):
     """A sample of weight two is two samples."""
     rng = np.random.default_rng(9)
@@ -276,113 +245,6 @@ def test_lines_leave_nothing_of_lines():
     assert residual_variance(X, noisy, np.ones(12)).mean() == pytest.approx(1.0, abs=0.5)
 
 
-def test_gauss_newton_ends_at_the_posterior(linear):
-    exact = posterior(linear)
-    found = gauss_newton(linear, Gaussian(exact.mean + 0.01, 1e-4 * np.eye(SIZE)))
-    np.testing.assert_allclose(found.mean, exact.mean, rtol=1e-6, atol=1e-9)
-    np.testing.assert_allclose(found.covariance, exact.covariance, rtol=1e-5, atol=1e-12)
-
-
-def test_gauss_newton_ends_with_slopes_of_its_own_width(linear):
-    """From so wide a start that the first are others, even if it is at the optimum."""
-    waves = replace(linear, bend=0.05)
-    truth = Gaussian(UNKNOWNS.prior.mean, np.eye(SIZE))
-    waves = replace(waves, data=waves.simulate(truth.mean[None])[0])
-    narrow = replace(truth, covariance=1e-8 * np.eye(SIZE))
-    wide, expected = (
-        laplace(waves, truth.mean, linearise(waves, one)[1]) for one in (truth, narrow)
-    )
-    found = gauss_newton(waves, truth)
-    assert found.squared_distance(truth.mean) < 0.5
-    apart = [abs(one.covariance / expected.covariance - 1).max() for one in (wide, found)]
-    assert apart[0] > 0.3
-    assert apart[1] < 0.05
-
-
-def test_gauss_newton_follows_a_valley_that_bends():
-    """On its floor, far from its end; steps as long as the tangent allows would not get there."""
-    scale = np.sqrt(np.diag(UNKNOWNS.prior.covariance))
-
-    class Valley(Linear):
-        def simulate(self, X):
-            z = (X - UNKNOWNS.prior.mean) / scale
-            Y = np.zeros((len(X), 40))
-            Y[:, 0], Y[:, 1] = z[:, 0], 5 * (z[:, 1] - z[:, 0] ** 2 + z[:, 0])
-            return Y
-
-    valley = Valley(1.5 * np.eye(40)[0], np.empty(0), variance=np.full(40, 0.3**2))
-    floor = np.zeros(SIZE)
-    floor[:2] = -1.5, 3.75
-    start = Gaussian(UNKNOWNS.prior.mean + floor * scale, 1e-4 * np.diag(scale**2))
-    Y = valley.simulate(gauss_newton(valley, start).mean[None])[0]
-    assert ((Y - valley.data) ** 2 / valley.variance).sum() < 0.5
-
-
-def test_slopes_are_the_derivatives(linear):
-    value, slope = linearise(linear, Gaussian(np.ones(SIZE), 1e-2 * np.eye(SIZE)))
-    np.testing.assert_allclose(value, linear.slope.sum(axis=0), rtol=1e-12)
-    np.testing.assert_allclose(slope, linear.slope, atol=1e-9)
-
-
-def test_the_chain_has_the_posteriors_moments(linear):
-    exact = posterior(linear)
-    chain = independence_chain(linear, exact, 4000, np.random.default_rng(2))
-    assert 0.5 < chain.acceptance <= 1.0
-    scale = np.sqrt(np.diag(exact.covariance))
-    assert abs((chain.samples.mean(axis=0) - exact.mean) / scale).max() < 0.15
-    np.testing.assert_allclose(chain.samples.std(axis=0) / scale, 1.0, atol=0.1)
-    too_narrow = Gaussian(exact.mean, exact.covariance / 4)
-    wide = independence_chain(linear, too_narrow, 4000, np.random.default_rng(2))
-    assert wide.acceptance < chain.acceptance
-
-
-def test_further_data_are_the_answers_or_not(linear):
-    """The p-value is uniform for data that samples of the answer make, and small for others."""
-    exact, rng = posterior(linear), np.random.default_rng(7)
-    slope, variance = rng.normal(size=linear.slope.shape), np.full(40, 0.01**2)
-    p = []
-    for sample in exact.draw(rng, 60):
-        data = sample @ slope + 0.01 * rng.normal(size=40)
-        p.append(predictive_p(exact.draw(rng, 100) @ slope, data, variance, rng))
-    assert kstest(p, "uniform").pvalue > 0.01
-    assert predictive_p(exact.draw(rng, 100) @ slope, data + 0.02, variance, rng) < 0.02
-
-
-def test_the_prior_is_the_disorder_models():
-    rng = np.random.default_rng(3)
-    drawn = [disorder_realization(rng, 3, 50) for _ in range(4000)]
-    values = np.array([[*c, V.mean()] for c, V in drawn])
-    covariance = UNKNOWNS.prior.covariance[np.ix_([0, 1, 2, 4], [0, 1, 2, 4])]
-    scale = np.sqrt(np.diag(covariance))
-    np.testing.assert_allclose(
-        np.cov(values.T) / np.outer(scale, scale), covariance / np.outer(scale, scale), atol=0.08
-    )
-    assert scale[-1] == pytest.approx(0.01)
-    assert UNKNOWNS.prior.mean[3] == pytest.approx(8.0)
-
-
-def test_the_potentials_std_needs_no_potential():
-    rng = np.random.default_rng(4)
-    one, other = UNKNOWNS.prior.draw(rng, 2)
-    apart = UNKNOWNS.potential(one) - UNKNOWNS.potential(other)
-    assert UNKNOWNS.site_distance(one, other) == pytest.approx(np.sqrt((apart**2).mean()))
-    X = UNKNOWNS.prior.draw(rng, 20_000)
-    spread = np.sqrt(UNKNOWNS.potential(X).var(axis=0).mean())
-    assert UNKNOWNS.site_std(UNKNOWNS.prior.covariance) == pytest.approx(spread, rel=0.02)
-    wire = UNKNOWNS.wires(one[None], (1.0, 2.0))[0]
-    np.testing.assert_array_equal(wire.potential, UNKNOWNS.potential(one))
-    assert (wire.alpha, wire.barrier) == (UNKNOWNS.alpha(one), (1.0, 2.0))
-
-
-def test_names_and_vectors():
-    assert UNKNOWNS.names == ("c_1", "c_2", "c_3", "alpha", "mean")
-    x = UNKNOWNS.vector({"c_2": np.array([1.0, 2.0])})
-    np.testing.assert_array_equal(x, [[0, 1, 0, 8, 0], [0, 2, 0, 8, 0]])
-    fixed = Unknowns(CONFIG.model_copy(update={"alpha_range": (7.0, 7.0)}))
-    assert fixed.names == ("c_1", "c_2", "c_3", "mean")
-    assert fixed.alpha(np.zeros(4)) == 7.0
-
-
 def test_rounds_and_checkpoints_survive_json(linear, tmp_path):
     one = next(iter(regression_rounds(linear, UNKNOWNS.prior, [0], SETTINGS)))
     path = tmp_path / "notes.json"
@@ -396,69 +258,3 @@ def test_rounds_and_checkpoints_survive_json(linear, tmp_path):
     assert len(other) == 0
     other.cached("round", one.to_dict)
     assert [len(Checkpoint(path, run)) for run in (b"run", b"another run")] == [1, 1]
-
-
-def test_excess_looks_at_each_channel():
-    class Channels:
-        channel = np.repeat(np.arange(4), 100)
-
-    squares = np.ones(400)
-    assert chi_square_excess(Channels, squares) == pytest.approx(0.0)
-    squares[:100] = 2.0  # one channel is off
-    assert chi_square_excess(Channels, squares) == pytest.approx(100 / np.sqrt(200))
-
-
-@pytest.mark.parametrize(
-    ("misfits", "expected"),
-    [
-        ((2.0, 2.05), NOT_DESCRIBED),
-        ((2.3, 2.0), NOT_CONVERGED),
-        ((1.0, 2.0), NOT_CONVERGED),
-        ((1.35, 1.39), NOT_CONVERGED),  # but for the noise, 0.91 and 0.97
-        ((1.35, 1.36), NOT_DESCRIBED),
-    ],
-)
-def test_answers_that_are_equally_bad_say_that_the_model_is(linear, misfits, expected):
-    """… and one that fits does not, but data as noisy as these need a second that agrees."""
-    noisy = replace(linear, variance=np.full(40, 1.0))
-    attempts = [
-        Attempt(
-            last_proposal=UNKNOWNS.prior,
-            answer=Gaussian(far * np.ones(SIZE), 1e-6 * np.eye(SIZE)),
-            data=noisy.data + misfit,
-            objective=40 * misfit**2,
-            excess=(misfit**2 - 1) * np.sqrt(20),
-            rounds=5,
-        )
-        for far, misfit in enumerate(misfits)
-    ]
-    assert verdict(noisy, attempts) == expected
-
-
-@pytest.mark.parametrize(("noise", "expected"), [(0.3, NOT_CONVERGED), (1e-3, CONVERGED)])
-def test_one_answer_that_fits_is_enough_where_the_noise_hides_little(linear, noise, expected):
-    measured = replace(linear, variance=np.full(40, noise**2))
-    answer = Gaussian(np.zeros(SIZE), np.eye(SIZE))
-    alone = Attempt(answer, answer, measured.data, objective=0.0, excess=0.0, rounds=5)
-    assert verdict(measured, [alone]) == expected
-    few = Linear(measured.data[:20], linear.slope[:, :20], variance=measured.variance[:20])
-    assert verdict(few, [alone]) == NOT_CONVERGED  # a wrong answer may fit four for each unknown
-    assert verdict(measured, [alone, replace(alone, objective=1.0)]) == CONVERGED
-
-
-def test_answers_are_the_same_that_error_bars_allow():
-    """However small the distance is, along the axis that is known best it may be far."""
-    covariance = np.diag([1.0, 1e-6, *np.ones(SIZE - 2)])
-    about = Gaussian(np.zeros(SIZE), covariance)
-    one = Attempt(about, about, np.zeros(40), 0.0, 0.0, 5)
-    observation = Linear(np.zeros(40), np.empty(0))
-    for axis, far, same in [(0, 2.0, True), (1, 1e-3, True), (1, 0.1, False), (0, 6.0, False)]:
-        other = replace(one, answer=Gaussian(far * np.eye(SIZE)[axis], covariance))
-        assert same_answer(observation, one, other) == same
-
-
-def test_noise_by_channel():
-    np.testing.assert_array_equal(noise_of_channels(0.1), [0.1] * 4)
-    named = {"G_RL": 4.0e-3, "G_LL": 1.0e-3, "G_LR": 3.0e-3, "G_RR": 2.0e-3}
-    np.testing.assert_array_equal(noise_of_channels(named), [1e-3, 2e-3, 3e-3, 4e-3])
-    assert Observation.__dataclass_fields__.keys() >= {"measurement", "unknowns", "noise"}
