@@ -1,4 +1,4 @@
-"""How many independent combinations of the disorder the data fix, by the Jacobian.
+"""How many independent combinations of the disorder the data fix, from the Jacobian.
 
 At a wire of the disorder model the derivatives of all conductances with respect to the unknowns
 give the information that data with a certain noise hold. In units of the prior it has one

@@ -2,7 +2,7 @@
 
 Each row inverts a fresh wire of `studies.inversions`, of which one thing is other than the model
 has it, and asks two checks: the verdict, and measurements at other barriers (K'_full of S-II.1),
-which the inversion has not seen. Rows of the kind "nothing" count false alarms.
+which the inversion does not use. Rows of the kind "nothing" count false alarms.
 """
 
 from __future__ import annotations
