@@ -24,15 +24,15 @@ from disorder_landscape.claims.inversions import (
     COVERAGE,
     INVERSIONS,
     coverage,
-    deviations,
     joint_coverage,
     joint_quantiles,
+    z_scores,
 )
 from disorder_landscape.dataset.store import provenance
 from disorder_landscape.files import read_json, replacing, write_json
 from disorder_landscape.inference.attempt import best
-from disorder_landscape.inference.inversion import invert
-from disorder_landscape.inference.posterior import independence_chain
+from disorder_landscape.inference.invert import invert
+from disorder_landscape.inference.posterior.markov_chain import independence_chain
 from disorder_landscape.studies.inversions import Task, fresh_wire, network_of
 
 NOISE = 0.01
@@ -50,7 +50,7 @@ def calibration(table: pd.DataFrame) -> dict[str, object]:
     for (model, noise), some in table[table["noise"] > 0].groupby(["model", "noise"]):
         one: dict[str, object] = {"wires": len(some)}
         for which, quantiles, parts in (
-            ("", norm.cdf(deviations(some)), coverage(some)),
+            ("", norm.cdf(z_scores(some)), coverage(some)),
             ("joint_", joint_quantiles(some), joint_coverage(some)),
         ):
             inside = dict(zip(map(str, COVERAGE), parts.round(4).tolist(), strict=True))
@@ -61,7 +61,7 @@ def calibration(table: pd.DataFrame) -> dict[str, object]:
 
 
 def chains(model: str, wires: int) -> list[dict[str, float]]:
-    """Compare answers with chains: proposals accepted, means apart and ratios of deviations."""
+    """Compare answers with chains: acceptance, difference of means, ratio of their widths."""
     rows = []
     for index in tqdm(range(wires), unit=" chains", desc=model):
         task = Task(model, NOISE, index)
@@ -72,10 +72,10 @@ def chains(model: str, wires: int) -> list[dict[str, float]]:
         rows.append(
             {
                 "acceptance": round(chain.acceptance, 3),
-                "apart_in_deviations": round(
-                    float((abs(chain.members.mean(0) - answer.mean) / scale).max()), 3
+                "apart_in_stds": round(
+                    float((abs(chain.samples.mean(0) - answer.mean) / scale).max()), 3
                 ),
-                "ratio_of_deviations": round(float((chain.members.std(0) / scale).mean()), 3),
+                "ratio_of_stds": round(float((chain.samples.std(0) / scale).mean()), 3),
             }
         )
     return rows
@@ -105,7 +105,7 @@ def draw(table: pd.DataFrame, path: Path) -> None:
         )
         if not wires.empty:
             az.plot_ecdf(
-                norm.cdf(deviations(wires)), cdf=uniform.cdf, difference=True,
+                norm.cdf(z_scores(wires)), cdf=uniform.cdf, difference=True,
                 confidence_bands="auto", ci_prob=0.95, ax=panel,
                 eval_points=np.linspace(0, 1, 101),
             )  # fmt: skip

@@ -1,8 +1,8 @@
-"""Our rounds and polish beside a library's ES-MDA, from the same starts: errors and seconds.
+"""Our search beside a library's ES-MDA, from the same starts: errors and seconds.
 
-The library is iterative_ensemble_smoother, with 160 members and eight steps, each with half of the
-inflation of the one before. Writes smoothers.csv, a row per wire. What is there is not repeated: an
-interrupted run goes on. Example: python claims/smoothers.py --wires 2
+The library is iterative_ensemble_smoother, with an ensemble of 160 and eight steps, each with half
+of the inflation of the one before. Writes smoothers.csv, a row per wire. What is there is not
+repeated: an interrupted run goes on. Example: python claims/smoothers.py --wires 2
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from pathlib import Path
 import numpy as np
 from iterative_ensemble_smoother import ESMDA
 
-from disorder_landscape.inference.first_guess import network_guess
-from disorder_landscape.inference.observation import Observation
-from disorder_landscape.inference.polish import polish
-from disorder_landscape.inference.rounds import RoundSettings, rounds
-from disorder_landscape.inference.unknowns import Gaussian
+from disorder_landscape.inference.problem.gaussian import Gaussian
+from disorder_landscape.inference.problem.observation import Observation
+from disorder_landscape.inference.search.first_guess import network_guess
+from disorder_landscape.inference.search.gauss_newton import gauss_newton
+from disorder_landscape.inference.search.regression_rounds import RoundSettings, regression_rounds
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.studies.inversions import (
     Task,
@@ -27,15 +27,15 @@ from disorder_landscape.studies.inversions import (
     rounded,
 )
 
-MEMBERS, STEPS, RATIO = 160, 8, 2.0
+ENSEMBLE, STEPS, RATIO = 160, 8, 2.0
 TRUNCATION = 0.999
 """Part of the singular values' sum that the library keeps."""
 COMMAND = "python claims/smoothers.py"
 
 
 def library(observation: Observation, start: Gaussian, seed: int) -> tuple[FloatArray, float]:
-    """Return the mean of ES-MDA's members in the end, and their deviation of V."""
-    X = start.draw(np.random.default_rng(seed), MEMBERS)
+    """Return the mean of ES-MDA's last ensemble, and its standard deviation of V."""
+    X = start.draw(np.random.default_rng(seed), ENSEMBLE)
     smoother = ESMDA(
         covariance=observation.variance,
         observations=observation.data,
@@ -45,14 +45,14 @@ def library(observation: Observation, start: Gaussian, seed: int) -> tuple[Float
     for _ in range(smoother.num_assimilations()):
         smoother.prepare_assimilation(Y=observation.simulate(X).T, truncation=TRUNCATION)
         X = smoother.assimilate_batch(X=X.T).T
-    return X.mean(axis=0), observation.unknowns.site_deviation(np.cov(X.T))
+    return X.mean(axis=0), observation.unknowns.site_std(np.cov(X.T))
 
 
 def ours(observation: Observation, start: Gaussian, seed: int) -> tuple[FloatArray, float]:
     """Return the same of one attempt of ours."""
-    *_, last = rounds(observation, start, [seed, 0], RoundSettings())
-    answer = polish(observation, last.distribution)
-    return answer.mean, observation.unknowns.site_deviation(answer.covariance)
+    *_, last = regression_rounds(observation, start, [seed, 0], RoundSettings())
+    answer = gauss_newton(observation, last.distribution)
+    return answer.mean, observation.unknowns.site_std(answer.covariance)
 
 
 def row(task: Task) -> dict[str, object]:

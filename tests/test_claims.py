@@ -562,7 +562,7 @@ def test_the_transition_of_a_long_pristine_wire_is_where_theory_says():
 def test_the_mean_is_told_by_no_component(monkeypatch):
     monkeypatch.setattr(measurements_of_wires, "DRAWS", 1000)
     measurements_of_wires._realizations.cache_clear()
-    assert abs(measurements_of_wires.mean_told_by_components(5)) < 0.05
+    assert abs(measurements_of_wires.r2_of_mean_from_components(5)) < 0.05
     assert measurements_of_wires.mean_spread(5) == pytest.approx(0.01, rel=0.1)
     measurements_of_wires._realizations.cache_clear()
 

@@ -1,4 +1,4 @@
-"""What the inversions of fresh wires came to, and how much the data say of more components."""
+"""Results of the inversions of fresh wires, and how much the data constrain more components."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from scipy.stats import chi2, f, norm
 
 from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.table import markdown
-from disorder_landscape.inference.comparison import UNLIKELY
 from disorder_landscape.inference.verdict import CONVERGED
+from disorder_landscape.inference.verification.comparison import UNLIKELY
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.studies.inversions import wrong
 from disorder_landscape.studies.unmodelled import KINDS
@@ -61,14 +61,14 @@ UNMODELLED_COLUMNS = (
 )
 
 
-def deviations(table: pd.DataFrame) -> FloatArray:
-    """Return the truths' distances from the answers in deviations, all unknowns of all wires."""
-    return np.concatenate([np.array(text.split(), dtype=float) for text in table["deviations"]])
+def z_scores(table: pd.DataFrame) -> FloatArray:
+    """Return the truths' distances from the answers in standard deviations, all unknowns."""
+    return np.concatenate([np.array(text.split(), dtype=float) for text in table["z_scores"]])
 
 
 def coverage(table: pd.DataFrame) -> FloatArray:
     """Return which part of the truths the central intervals of COVERAGE hold."""
-    z = abs(deviations(table))
+    z = abs(z_scores(table))
     return np.array([(z < norm.ppf((1 + part) / 2)).mean() for part in COVERAGE])
 
 
@@ -77,14 +77,16 @@ def joint_quantiles(table: pd.DataFrame) -> FloatArray:
 
     All unknowns count at once, by Mahalanobis' distance: uniform over the wires if error bars and
     their correlations are right. `coverage` does not see correlations, nor a single wrong axis.
-    Where mean and covariance are those of a population that is worth n members, the square of the
-    distance is 1 + 1/n times Hotelling's T² (Ann. Math. Stat. 2, 360 (1931)).
+    Where mean and covariance are those of samples with the effective sample size n, the square of
+    the distance is 1 + 1/n times Hotelling's T² (Ann. Math. Stat. 2, 360 (1931)).
     """
-    squares, unknowns = table["mahalanobis"], table["deviations"].str.split().str.len()
-    n = np.maximum(table["worth"], unknowns + 1)
+    squares, unknowns = table["mahalanobis"], table["z_scores"].str.split().str.len()
+    n = np.maximum(table["effective_sample_size"], unknowns + 1)
     ratio = squares * (n - unknowns) / (unknowns * (n - 1) * (1 + 1 / n))
     few = f.cdf(ratio, unknowns, n - unknowns)
-    return np.asarray(np.where(table["worth"].isna(), chi2.cdf(squares, unknowns), few))
+    return np.asarray(
+        np.where(table["effective_sample_size"].isna(), chi2.cdf(squares, unknowns), few)
+    )
 
 
 def joint_coverage(table: pd.DataFrame) -> FloatArray:

@@ -66,10 +66,10 @@ def _value(outcome: Outcome, unit: str) -> str:
 def verdict(finding: Finding) -> str:
     """Return the verdict with its reason and remark."""
     waits = finding.verdict == "not tested" and bool(finding.outcomes)
-    said = [finding.verdict + " yet" * waits + (f": {finding.reason}" if finding.reason else "")]
+    parts = [finding.verdict + " yet" * waits + (f": {finding.reason}" if finding.reason else "")]
     if finding.claim.remark and finding.deciding is not None:
-        said.append(finding.claim.remark)
-    return "; ".join(said)
+        parts.append(finding.claim.remark)
+    return "; ".join(parts)
 
 
 def tally(findings: Iterable[Finding]) -> str:

@@ -20,11 +20,12 @@ from disorder_landscape.chain import MODELS, shipped_model
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.inference.attempt import Attempt, best
-from disorder_landscape.inference.first_guess import network_labels
-from disorder_landscape.inference.inversion import invert
-from disorder_landscape.inference.measurement import Measurement, empty_measurement
-from disorder_landscape.inference.observation import Observation, noise_of_channels
-from disorder_landscape.inference.unknowns import Gaussian, Unknowns
+from disorder_landscape.inference.invert import invert
+from disorder_landscape.inference.problem.gaussian import Gaussian
+from disorder_landscape.inference.problem.measurement import Measurement, empty_measurement
+from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
+from disorder_landscape.inference.problem.unknowns import Unknowns
+from disorder_landscape.inference.search.first_guess import network_labels
 from disorder_landscape.inference.verdict import verdict
 from disorder_landscape.learning.model import TrainedModel, load_model
 from disorder_landscape.model.parameters import FloatArray
@@ -128,8 +129,8 @@ class Inverted:
 
     chosen: Attempt
     outcome: dict[str, object]
-    """`spread`, the answer's own deviation of V in meV; `worth` of its population, NaN where it is
-    none; `excess`, `verdict`, `attempts`, `rounds`, `seconds`."""
+    """`spread`, the answer's own standard deviation of V in meV; `effective_sample_size`, NaN
+    without importance sampling; `excess`, `verdict`, `attempts`, `rounds`, `seconds`."""
 
     @property
     def answer(self) -> Gaussian:
@@ -143,9 +144,10 @@ def inverted(observation: Observation, network: TrainedModel | None, seed: int) 
     attempts = invert(observation, network, seed)
     seconds = time.perf_counter() - begun
     chosen = best(attempts)
+    drawn = chosen.importance_samples
     outcome: dict[str, object] = {
-        "spread": observation.unknowns.site_deviation(chosen.answer.covariance),
-        "worth": np.nan if chosen.population is None else chosen.population.worth,
+        "spread": observation.unknowns.site_std(chosen.answer.covariance),
+        "effective_sample_size": np.nan if drawn is None else drawn.effective_sample_size,
         "excess": chosen.excess,
         "verdict": verdict(observation, attempts),
         "attempts": len(attempts),
@@ -163,7 +165,7 @@ def inversion_row(task: Task) -> dict[str, object]:
     dict
         V errors in meV, root mean square over the sites; the errors of α in meV nm; `scaled_error`,
         the mean square error of the paper's labels in units of their variance, which is 1 − R²;
-        `deviations`, the true unknowns' distances from the answer in units of its deviations;
+        `z_scores`, the true unknowns' distances from the answer in its standard deviations;
         `mahalanobis`, all of them together squared; and the outcome of `Inverted`.
     """
     observation, truth = fresh_wire(task)
@@ -187,7 +189,7 @@ def inversion_row(task: Task) -> dict[str, object]:
         **found.outcome,
     }
     z = (truth - mean) / np.sqrt(np.diag(found.answer.covariance))
-    return {**rounded(row), "deviations": " ".join(f"{one:.3f}" for one in z)}
+    return {**rounded(row), "z_scores": " ".join(f"{one:.3f}" for one in z)}
 
 
 def rounded(row: dict[str, object]) -> dict[str, object]:

@@ -1,10 +1,10 @@
-"""How many independent combinations of the disorder the data fix, by the Jacobian.
+"""How many independent combinations of the disorder the data fix, from the Jacobian.
 
 At a wire of the disorder model the derivatives of all conductances with respect to the unknowns
 give the information that data with a certain noise hold. In units of the prior it has one
-eigenvalue for each independent combination; where it is above one, the data tell more of that
-combination than was known before. The posterior's deviation of V follows from the same matrix: an
-answer that is unique in this sense may still have others far away.
+eigenvalue for each independent combination. Where it is above one, the data constrain that
+combination more than the prior does. The posterior's standard deviation of V follows from the same
+matrix. An answer that is unique in this sense may still have others far away.
 """
 
 from __future__ import annotations
@@ -15,10 +15,11 @@ import numpy as np
 
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset.realizations import realization
-from disorder_landscape.inference.measurement import empty_measurement
-from disorder_landscape.inference.observation import Observation, noise_of_channels
-from disorder_landscape.inference.polish import linearise
-from disorder_landscape.inference.unknowns import Gaussian, Unknowns
+from disorder_landscape.inference.problem.gaussian import Gaussian
+from disorder_landscape.inference.problem.measurement import empty_measurement
+from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
+from disorder_landscape.inference.problem.unknowns import Unknowns
+from disorder_landscape.inference.search.gauss_newton import linearise
 from disorder_landscape.model.parameters import FloatArray
 
 NOISE = (0.001, 0.01, 0.1)
@@ -79,8 +80,8 @@ def information_rows(setting: Setting) -> list[dict[str, float]]:
                 "noise": noise,
                 "unknowns": truth.size,
                 "fixed": int((eigenvalues > 1).sum()),
-                "spread": unknowns.site_deviation(posterior),
-                "prior_spread": unknowns.site_deviation(prior),
+                "spread": unknowns.site_std(posterior),
+                "prior_spread": unknowns.site_std(prior),
             }
         )
     return rows

@@ -2,7 +2,7 @@
 
 Each row inverts a fresh wire of `studies.inversions`, of which one thing is other than the model
 has it, and asks two checks: the verdict, and measurements at other barriers (K'_full of S-II.1),
-which the inversion has not seen. Rows of the kind "nothing" count false alarms.
+which the inversion does not use. Rows of the kind "nothing" count false alarms.
 """
 
 from __future__ import annotations
@@ -12,10 +12,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from disorder_landscape.dataset.realizations import realization
-from disorder_landscape.inference.measurement import Measurement, empty_measurement, simulated
-from disorder_landscape.inference.observation import Observation, noise_of_channels
-from disorder_landscape.inference.posterior import predictive_p
-from disorder_landscape.inference.unknowns import Unknowns
+from disorder_landscape.inference.problem.measurement import (
+    Measurement,
+    empty_measurement,
+    simulated,
+)
+from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
+from disorder_landscape.inference.problem.unknowns import Unknowns
+from disorder_landscape.inference.verification.predictive import predictive_p
 from disorder_landscape.model.parameters import FloatArray, Nanowire
 from disorder_landscape.studies.inversions import SEED, inverted, measured, network_of, rounded
 
@@ -36,7 +40,7 @@ OTHER_BARRIERS = (25.0, 10.0)
 """Of the measurements that check the answer, left and right in meV."""
 EVERY = 2
 """Of the points of μ and B, how many they are apart."""
-MEMBERS = 100
+SAMPLES = 100
 """Of the answer, which predict those measurements."""
 KEYS = ["model", "noise", "kind", "index"]
 
@@ -111,7 +115,7 @@ def unmodelled_row(task: Task) -> dict[str, object]:
         measured(other_settings, other_G, task.noise, task.index, 3), unknowns, noise
     )
     rng = np.random.default_rng([SEED, task.index, 4])
-    predicted = further.simulate(found.chosen.draw(rng, MEMBERS))
+    predicted = further.simulate(found.chosen.draw(rng, SAMPLES))
     return rounded(
         {
             "model": task.model,
