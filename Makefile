@@ -66,22 +66,22 @@ bench: $(READY) ## time the solvers, table and plot into build/bench (a few minu
 	$(LANDSCAPE) bench
 
 accuracy: $(READY) ## compare 2000 thermal averages with the integral by brute force
-	$(VENV_PYTHON) claims/accuracy.py
+	$(LANDSCAPE) study accuracy
 
 odd-wires: $(READY) ## compare odd wires with Kwant and with the integral by brute force (an hour)
-	$(VENV_PYTHON) claims/odd_wires.py
+	$(LANDSCAPE) study odd_wires
 
-study: $(READY) ## carry out the study STUDY of configs/studies, its table into claims (hours)
-	$(LANDSCAPE) study configs/studies/$(STUDY).toml
+study: $(READY) ## carry out the study STUDY of configs/studies, its table into results (hours; it goes on)
+	$(LANDSCAPE) study $(STUDY)
 
-inversion-study: $(READY) ## invert fresh wires, judge errors and error bars, tables into claims (hours; it goes on)
-	$(VENV_PYTHON) claims/inversion.py
-	$(VENV_PYTHON) claims/starts.py
-	$(VENV_PYTHON) claims/components.py
-	$(VENV_PYTHON) claims/unmodelled.py
-	$(VENV_PYTHON) claims/uniqueness.py
-	$(VENV_PYTHON) claims/smoothers.py
-	$(VENV_PYTHON) claims/calibration.py
+inversion-study: $(READY) ## invert fresh wires, judge errors and error bars, tables into results (hours; it goes on)
+	$(LANDSCAPE) study inversions
+	$(LANDSCAPE) study starts
+	$(LANDSCAPE) study components
+	$(LANDSCAPE) study unmodelled
+	$(LANDSCAPE) study uniqueness
+	$(LANDSCAPE) study smoothers
+	$(LANDSCAPE) study calibration
 
 # ONLY=id measures one claim; STORE=1 keeps what has been measured as the value that is stored.
 claims: $(READY) ## check the paper's claims: measure again what is quick, table into build/claims.md

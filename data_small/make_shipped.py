@@ -68,7 +68,7 @@ def write_sums() -> None:
 if __name__ == "__main__":
     made = sys.argv[1:] or [*PRESETS, "thirty"]
     if "thirty" in made:
-        ship_model(open_run(f"configs/inversions/{THIRTY}.toml"), shipped_model(THIRTY))
+        ship_model(open_run(f"configs/{THIRTY}.toml"), shipped_model(THIRTY))
     for preset in (name for name in made if name in PRESETS):
         for model in MODELS:
             run = preset_run(preset, model=model)

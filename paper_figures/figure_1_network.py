@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from command import Request, figure_script
-from disorder_landscape.learning.networks import build_network
+from disorder_landscape.learning.networks.build import build_network
 from disorder_landscape.learning.scaling import CHANNELS, label_names
 from plotting import FULL_WIDTH, LABELS, inches
 from solids import DEPTH, draw_box
@@ -50,7 +50,7 @@ LARGEST, DEPTH_SHARE, THICKEST, THINNEST = 1.0, 0.52, 0.13, 0.02
 LEFT, PITCH, GAP = 0.4, 0.18, 0.14
 """Left margin, and room after a box within a set and after a set, in inches."""
 
-SMALL_TEXT = {"fontsize": 8, "linespacing": 1.1}
+SMALL_TEXT: dict[str, Any] = {"fontsize": 8, "linespacing": 1.1}
 
 
 @dataclass(frozen=True)

@@ -2,8 +2,8 @@
 
 Each point is where measured learning curves (Figure S11) cross R² = 0.77: the geometric mean over
 seeds, bars from the smallest to the largest. Straight lines on logarithmic axes: the fit to these
-points, and the paper's. Drawn from claims/learning_curves.csv, which
-`landscape study configs/studies/learning_curves.toml` measures.
+points, and the paper's. Drawn from results/learning_curves.csv, which
+`landscape study learning_curves` measures.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ from matplotlib.figure import Figure
 
 from command import Request, figure_script
 from disorder_landscape.chain import REPOSITORY
-from disorder_landscape.claims.claim import claim_of, load_claims
+from disorder_landscape.claims.claim import paper_value
 from disorder_landscape.studies.crossings import (
     PowerLaw,
     fit_power_law,
     learning_curves,
     realizations_needed,
 )
-from disorder_landscape.studies.table import read_table
+from disorder_landscape.studies.trainings_table import read_table
 from plotting import COLUMN, INPUT, PREDICTION, inches
 
-TABLE = REPOSITORY / "claims" / "learning_curves.csv"
+TABLE = REPOSITORY / "results" / "learning_curves.csv"
 
 
 def data(request: Request) -> xr.Dataset:
@@ -80,9 +80,7 @@ def draw(data: xr.Dataset) -> Figure:
 
 
 def _papers_law() -> PowerLaw:
-    claims = load_claims()
-    values = (claim_of(f"fig2-{name}", claims).paper for name in ("prefactor", "exponent", "fit"))
-    return PowerLaw(*map(float, values))
+    return PowerLaw(*(paper_value(f"fig2-{name}") for name in ("prefactor", "exponent", "fit")))
 
 
 def _formula(name: str, law: PowerLaw) -> str:

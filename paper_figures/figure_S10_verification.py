@@ -123,9 +123,10 @@ def _by_kind(result: xr.Dataset) -> xr.Dataset:
     """Return the scores of each kind of measurement by itself."""
     mismatch, wrong = (result[n].to_numpy() for n in ("mismatch", "control_mismatch"))
     typical = np.median(wrong, axis=0)
+    no_noise = np.zeros_like(typical)
     kinds = [slice(i, i + 1) for i in range(len(KINDS))]
-    ratio = [scores(mismatch[i] ** 2, typical[i], 0.0) for i in kinds]
-    of_wrong = [scores(wrong[:, i] ** 2, typical[i], 0.0) for i in kinds]
+    ratio = [scores(mismatch[i] ** 2, typical[i], no_noise[i]) for i in kinds]
+    of_wrong = [scores(wrong[:, i] ** 2, typical[i], no_noise[i]) for i in kinds]
     return xr.Dataset(
         {
             "ratio": ("kind", ratio),

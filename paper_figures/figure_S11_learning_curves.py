@@ -12,7 +12,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from command import Request, figure_script
-from disorder_landscape.studies.table import read_table
+from disorder_landscape.studies.trainings_table import read_table
 from figure_2_scaling import TABLE
 from plotting import FULL_WIDTH, draw_trainings, inches, trainings
 

@@ -6,7 +6,7 @@ the inversions' own error bars (medians). Circles: answers that their verdict do
 (b) The error bar of V that the conductances allow, by their derivatives at the true wire, over the
 number of disorder components, for noise of 0.01 e²/h and several grids of µ × B × V_bias (medians
 over wires): the data fix all components that are drawn, and more data fix them better. Drawn from
-claims/inversions.csv and claims/uniqueness.csv, which `make inversion-study` measures. The paper
+results/inversions.csv and results/uniqueness.csv, which `make inversion-study` measures. The paper
 has neither.
 """
 
@@ -22,7 +22,7 @@ from matplotlib.figure import Figure
 
 from command import Request, figure_script
 from disorder_landscape.chain import FIVE, TEN
-from disorder_landscape.claims.inversions import INVERSIONS, UNIQUENESS
+from disorder_landscape.claims.study_tables import INVERSIONS, UNIQUENESS
 from disorder_landscape.inference.verdict import CONVERGED
 from plotting import FULL_WIDTH, INPUT, PREDICTION, inches
 
@@ -88,14 +88,14 @@ def _errors(axes: Axes, errors: xr.Dataset) -> None:
             (GUESS, -SHIFT, PREDICTION, "network"),
             (ANSWER, SHIFT, INPUT, "inversion"),
         ):
-            dots = {"ms": 2.2, "mew": 0, "color": colour, "label": None if column else label}
-            axes.plot(jitter + shift, some[name], ".", **dots)
+            once = None if column else label
+            axes.plot(jitter + shift, some[name], ".", ms=2.2, mew=0, color=colour, label=once)
         circles = jitter[refused] + SHIFT, some[ANSWER][refused]
         axes.plot(*circles, "o", ms=4, mew=0.6, mfc="none", color="k")
         if shown[column] > 0:  # without errors of measurement it is the simulation's accuracy
             bar = [np.median(some[BAR])] * 2
-            label = "own error bar" if column == 1 else None
-            axes.plot(column + np.array([0.02, 0.34]), bar, "k-", lw=1, label=label)
+            once = "own error bar" if column == 1 else None
+            axes.plot(column + np.array([0.02, 0.34]), bar, "k-", lw=1, label=once)
     axes.set(yscale="log", ylim=(5e-7, 1e3), xlim=(-0.5, len(shown) - 0.5))
     axes.set_xticks(range(len(shown)), [f"{noise:g}" for noise in shown])
     axes.set_xlabel(r"noise [$e^2/h$]")

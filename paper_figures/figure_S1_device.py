@@ -7,6 +7,7 @@ a left and a right lead. The drawing is not to scale.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -78,7 +79,7 @@ def _draw_solids(axes: Axes) -> None:
     draw_box(axes, (RIGHT, BOTTOM), (BARRIER_LENGTH, height, WIDTH), BARRIER)
     draw_box(axes, (RIGHT + inner, BOTTOM), (LEAD_LENGTH, height, WIDTH), LEAD)
     draw_box(axes, (LEFT, TOP), (RIGHT - LEFT, top, WIDTH), SUPERCONDUCTOR)
-    text = {"ha": "center", "va": "center", "zorder": 5}
+    text: dict[str, Any] = {"ha": "center", "va": "center", "zorder": 5}
     axes.text((LEFT + RIGHT) / 2, (BOTTOM + TOP) / 2, "semiconductor", **text)
     axes.text((LEFT + RIGHT) / 2, TOP + top / 2, "superconductor", **text)
     for x in (LEFT - inner - LEAD_LENGTH / 2, RIGHT + inner + LEAD_LENGTH / 2):

@@ -2,8 +2,8 @@
 
 Every convolution's filters are multiplied by the fraction on the axis. Each curve starts, at the
 full width that was affordable, with as many training realizations as give R² ≈ 0.77; dots are
-single trainings, lines go through their mean over seeds. Drawn from claims/network_width.csv, which
-`landscape study configs/studies/network_width.toml` measures.
+single trainings, lines go through their mean over seeds. Drawn from results/network_width.csv,
+which `landscape study network_width` measures.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from matplotlib.ticker import FixedLocator, NullLocator
 
 from command import Request, figure_script
 from disorder_landscape.chain import REPOSITORY
-from disorder_landscape.studies.table import read_table
+from disorder_landscape.studies.trainings_table import read_table
 from plotting import COLUMN, draw_trainings, inches, trainings
 
-TABLE = REPOSITORY / "claims" / "network_width.csv"
+TABLE = REPOSITORY / "results" / "network_width.csv"
 
 
 def data(request: Request) -> xr.Dataset:
@@ -35,7 +35,7 @@ def draw(data: xr.Dataset) -> Figure:
     draw_trainings(axes, data, "width_fraction", _label)
     widths = np.unique(data["width_fraction"])
     axes.set(xscale="log", xlabel="fraction of the paper's filters", ylabel="$R^2$")
-    axes.xaxis.set_major_locator(FixedLocator(widths))
+    axes.xaxis.set_major_locator(FixedLocator(widths.tolist()))
     axes.xaxis.set_major_formatter(lambda x, _: f"1/{1 / x:g}" if x < 1 else "1")
     axes.xaxis.set_minor_locator(NullLocator())
     axes.legend(title="components", loc="lower right")

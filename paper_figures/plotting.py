@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 from matplotlib import style
 from matplotlib.axes import Axes
-from matplotlib.axis import Axis
+from matplotlib.axis import Axis, XAxis
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import QuadMesh
 from matplotlib.colorbar import Colorbar
@@ -19,7 +19,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from disorder_landscape.studies.crossings import R2_AIMED_AT
-from disorder_landscape.studies.table import Result
+from disorder_landscape.studies.trainings_table import Result
 
 COLUMN, FULL_WIDTH = 3.404, 7.06
 """REVTeX's widths in inches."""
@@ -142,14 +142,13 @@ def keep_labels_inside(axis: Axis) -> None:
     """Align the outer two tick labels inwards, so that neighbouring panels' do not collide."""
     labels = axis.get_ticklabels()
     if len(labels) > 1:
-        for label, horizontal, vertical in (
-            (labels[0], "left", "bottom"),
-            (labels[-1], "right", "top"),
-        ):
-            if axis.axis_name == "x":
-                label.set_horizontalalignment(horizontal)
-            else:
-                label.set_verticalalignment(vertical)
+        first, last = labels[0], labels[-1]
+        if isinstance(axis, XAxis):
+            first.set_horizontalalignment("left")
+            last.set_horizontalalignment("right")
+        else:
+            first.set_verticalalignment("bottom")
+            last.set_verticalalignment("top")
 
 
 def outer_labels(panels: np.ndarray, x: str, y: str) -> None:
@@ -196,6 +195,8 @@ def colour_bar(
     unit : float
         Tick labels are in this unit.
     """
+    assert norm.vmin is not None
+    assert norm.vmax is not None
     margin = 1e-6 * (norm.vmax - norm.vmin)  # rounding is no clipping
     low = float(values.min()) < norm.vmin - margin
     high = float(values.max()) > norm.vmax + margin

@@ -75,9 +75,8 @@ def in_rows(chosen: xr.Dataset) -> xr.Dataset:
         xr.Dataset({name: chosen[name + end].variable for name in names}) for end in SUFFIX.values()
     ]
     table = xr.concat(rows, "row", combine_attrs="override").transpose("realization", "row", ...)
-    return table.assign_coords(
-        row=list(ROWS), **{name: chosen[name] for name in ("realization", "component", "site")}
-    )
+    coords = {name: chosen[name] for name in ("realization", "component", "site")}
+    return table.assign_coords({"row": list(ROWS), **coords})
 
 
 def letters(data: xr.Dataset) -> list[str]:
@@ -97,4 +96,5 @@ def alphas(data: xr.Dataset, i: int) -> str:
 
 
 def _progress(wires: list[Nanowire]) -> Iterable[Nanowire]:
-    return tqdm(wires, desc="simulate", unit=" wires", delay=2)
+    bar: Iterable[Nanowire] = tqdm(wires, desc="simulate", unit=" wires", delay=2)
+    return bar

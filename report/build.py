@@ -15,7 +15,6 @@ from typing import Any
 
 import jupytext
 from nbconvert import HTMLExporter
-from nbconvert.preprocessors import Preprocessor
 from nbformat import NotebookNode
 from nbformat.v4 import new_output
 
@@ -28,25 +27,22 @@ FORMATS = {"text/html": "_repr_html_", "text/markdown": "_repr_markdown_"}
 """What a cell's last value may know of itself."""
 
 
-class RunCells(Preprocessor):
+def run_cells(
+    notebook: NotebookNode, resources: dict[str, Any]
+) -> tuple[NotebookNode, dict[str, Any]]:
     """Run the code cells one after the other in one namespace, and keep what they return."""
-
-    def preprocess(
-        self, nb: NotebookNode, resources: dict[str, Any]
-    ) -> tuple[NotebookNode, dict[str, Any]]:
-        """Run a notebook."""
-        namespace: dict[str, Any] = {"__name__": "__main__"}
-        code = [cell for cell in nb.cells if cell.cell_type == "code"]
-        for count, cell in enumerate(code, 1):
-            value = run(cell.source, namespace)
-            data = {
-                mime: getattr(value, method)()
-                for mime, method in FORMATS.items()
-                if hasattr(value, method)
-            }
-            cell.execution_count = count
-            cell.outputs = [new_output("display_data", data)] if data else []
-        return nb, resources
+    namespace: dict[str, Any] = {"__name__": "__main__"}
+    code = [cell for cell in notebook.cells if cell.cell_type == "code"]
+    for count, cell in enumerate(code, 1):
+        value = run(cell.source, namespace)
+        data = {
+            mime: getattr(value, method)()
+            for mime, method in FORMATS.items()
+            if hasattr(value, method)
+        }
+        cell.execution_count = count
+        cell.outputs = [new_output("display_data", data)] if data else []
+    return notebook, resources
 
 
 def run(source: str, namespace: dict[str, Any]) -> Any:
@@ -65,7 +61,7 @@ def build(source: Path = SOURCE) -> str:
     for count, cell in enumerate(notebook.cells, 1):
         cell.id = f"cell-{count}"  # Jupytext's are random, and would end up in the page
     exporter = HTMLExporter(template_name="basic", template_file=str(PAGE))
-    exporter.register_preprocessor(RunCells(), enabled=True)
+    exporter.register_preprocessor(run_cells, enabled=True)
     page, _ = exporter.from_notebook_node(notebook)
     return str(page)
 

@@ -90,5 +90,5 @@ document("limits")
 # - `make report` writes this page.
 #
 # `make docs` builds the documentation, which tells the rest. The claims stand in
-# `claims/claims.toml`, the studies and their results in `claims/`, the figures' scripts in
+# `results/claims.toml`, the studies and their results in `results/`, the figures' scripts in
 # `paper_figures/`, this page's source in `report/`.

@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from disorder_landscape import bench, bench_report
+from disorder_landscape.bench import measurements, report
 from disorder_landscape.cli import main
 from disorder_landscape.config import DatasetConfig
 
@@ -23,11 +23,11 @@ def small(monkeypatch):
     datasets = {
         f"{n} components": DatasetConfig(realizations=8_000, components=n, **tiny) for n in (5, 10)
     }
-    for module in (bench, bench_report):
+    for module in (measurements, report):
         monkeypatch.setattr(module, "DATASETS", datasets)
-    monkeypatch.setattr(bench, "WIRES", dict.fromkeys(datasets, 1))
-    monkeypatch.setattr(bench, "LENGTHS", (60, 120))
-    monkeypatch.setattr(bench, "MEMORY", (DatasetConfig(realizations=1, **tiny),))
+    monkeypatch.setattr(measurements, "WIRES", dict.fromkeys(datasets, 1))
+    monkeypatch.setattr(measurements, "LENGTHS", (60, 120))
+    monkeypatch.setattr(measurements, "MEMORY", (DatasetConfig(realizations=1, **tiny),))
 
 
 @pytest.mark.usefixtures("small")

@@ -142,6 +142,6 @@ def test_the_shipped_files_are_those_of_the_checksums():
         cwd=chain.REPOSITORY / "data_small",
         check=True,
     )
-    folders = (chain.REPOSITORY / name for name in ("data_small", "claims"))
+    folders = (chain.REPOSITORY / name for name in ("data_small", "results"))
     files = (path for folder in folders for path in folder.rglob("*") if path.is_file())
     assert sum(path.stat().st_size for path in files) < 60e6  # what the repository may hold

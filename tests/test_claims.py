@@ -6,7 +6,7 @@ import hashlib
 import inspect
 import json
 import re
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
 import numpy as np
@@ -32,10 +32,12 @@ from disorder_landscape.config import Config
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.learning.scaling import LabelScaler
 from disorder_landscape.model.disorder import disorder_realization
-from disorder_landscape.studies.table import Result, write_table
+from disorder_landscape.studies.plan import study_names
+from disorder_landscape.studies.rows import as_text, write_rows
+from disorder_landscape.studies.trainings_table import Result
 
 ALL = load_claims()
-STUDY = {"scale": "small", "file": "claims/study.csv", "column": "R2", "where": {"n": 5}}
+STUDY = {"scale": "small", "file": "results/study.csv", "column": "R2", "where": {"n": 5}}
 KEPT = {"id": "x", "statement": "s", "where": "w"}
 
 
@@ -47,7 +49,7 @@ def claim(**changes):
 @pytest.fixture
 def study(tmp_path):
     """Write the study's files into an otherwise empty repository."""
-    folder = tmp_path / "claims"
+    folder = tmp_path / "results"
     folder.mkdir()
 
     def write(rows="n,R2\n5,0.96\n10,0.9\n", **made):
@@ -125,14 +127,15 @@ def _tests_exist(words):
     return any(pattern.search(path.read_text("utf-8")) for path in tests)
 
 
+def _command_exists(words):
+    commands = {command.callback.__name__ for command in app.registered_commands}
+    return words[0] in commands and (words[0] != "study" or words[1] in study_names())
+
+
 EXISTS = {
     "make": _make_exists,
-    "python": lambda words: (REPOSITORY / words[0]).is_file(),
     "pytest": _tests_exist,
-    "landscape": lambda words: (
-        words[0] in {command.name for command in app.registered_commands}
-        or words[0] in {command.callback.__name__ for command in app.registered_commands}
-    ),
+    "landscape": _command_exists,
 }
 """How each program that a command may name is checked."""
 
@@ -145,8 +148,8 @@ EXISTS = {
         ("make nonesuch", False),
         ("make evaluate PRESET=nonesuch", False),
         ("make claims ONLY=nonesuch", False),
-        ("python claims/accuracy.py --wires 2000", True),
-        ("python claims/nonesuch.py", False),
+        ("landscape study accuracy", True),
+        ("landscape study nonesuch", False),
         ("landscape train", True),
         ("landscape nonesuch", False),
         ("pytest -k components_required", True),
@@ -224,14 +227,14 @@ def test_two_claims_of_one_id_are_refused(tmp_path):
 def test_a_claim_turns_on_when_its_study_has_run(study, tmp_path):
     (before,) = stored_findings([claim(sense="at least")], tmp_path)
     assert (before.verdict, before.deciding) == ("not tested", None)
-    assert before.reason == "there is no claims/study.csv"
+    assert before.reason == "there is no results/study.csv"
     (after,) = stored_findings([claim(sense="at least")], study())
     assert (after.verdict, after.deciding.value) == ("reproduced", 0.96)
     assert after.reason == ""
 
 
 def test_the_first_value_that_is_there_decides_and_each_has_its_verdict(study):
-    absent = {"scale": "full", "file": "claims/absent.json", "key": "R2"}
+    absent = {"scale": "full", "file": "results/absent.json", "key": "R2"}
     ten = {**STUDY, "scale": "ten", "where": {"n": 10}}
     (found,) = stored_findings([claim(sense="at least", ours=[absent, STUDY, ten])], study())
     assert [one.verdict for one in found.outcomes] == ["not tested", "reproduced", "differs"]
@@ -246,7 +249,7 @@ def test_the_first_value_that_is_there_decides_and_each_has_its_verdict(study):
         ({"where": {}, "reduce": "min"}, 0.9),
         ({"where": {"n": "10"}, "times": 2}, 1.8),
         ({"minus": {"n": 10}}, 0.06),
-        ({"where": {}, "column": None, "file": "claims/study.json", "key": "fit/R2"}, 0.97),
+        ({"where": {}, "column": None, "file": "results/study.json", "key": "fit/R2"}, 0.97),
     ],
 )
 def test_values_of_csv_and_json(source, value, study):
@@ -269,7 +272,7 @@ def test_what_a_study_took_is_what_it_says(study):
         ({"derive": "nonesuch", "column": None}, "derive must name one of"),
         ({"column": "R3"}, "column R3"),
         ({"column": "word", "where": {"n": 5}}, "a number as word"),
-        ({"where": {}, "column": None, "file": "claims/study.json", "key": "fit/p"}, "fit/p"),
+        ({"where": {}, "column": None, "file": "results/study.json", "key": "fit/p"}, "fit/p"),
     ],
 )
 def test_a_study_without_the_value_is_an_error(source, said, study):
@@ -281,22 +284,23 @@ def test_a_study_without_the_value_is_an_error(source, said, study):
 def test_a_study_that_has_not_come_so_far_is_waited_for(study):
     (found,) = stored_findings([claim(ours=[{**STUDY, "where": {"n": 7}}])], study())
     assert found.verdict == "not tested"
-    assert table.verdict(found).startswith("not tested yet: claims/study.csv has no row with n = 7")
+    said = "not tested yet: results/study.csv has no row with n = 7"
+    assert table.verdict(found).startswith(said)
 
 
 def test_a_study_without_provenance_has_its_plan(study):
     root = study("n,R2,minutes\n5,0.96,2.5\n10,0.9,4\n")
-    (root / "claims" / "study.json").unlink()
+    (root / "results" / "study.json").unlink()
     plan = root / "configs" / "studies" / "study.toml"
     plan.parent.mkdir(parents=True)
     plan.write_text("")
     (found,) = stored_findings([claim()], root)
-    assert (found.command, found.minutes) == ("landscape study configs/studies/study.toml", 6.5)
+    assert (found.command, found.minutes) == ("landscape study study", 6.5)
 
 
 def test_a_result_must_tell_how_it_was_made(study):
     root = study()
-    (root / "claims" / "study.json").write_text("{}")
+    (root / "results" / "study.json").write_text("{}")
     with pytest.raises(ArgumentError, match="the command that made it"):
         stored_findings([claim()], root)
 
@@ -309,7 +313,7 @@ def test_a_result_must_have_its_checksum(study):
         "minutes": 3,
         "sha256": hashlib.sha256(rows.encode()).hexdigest(),
     }
-    (root / "claims" / "study.csv").write_text("n,R2\n5,0.99\n")
+    (root / "results" / "study.csv").write_text("n,R2\n5,0.99\n")
     with pytest.raises(ArgumentError, match="another file"):
         stored_findings([claim()], root)
 
@@ -331,6 +335,10 @@ def test_shipped_data_must_have_the_checksum_that_is_shipped_with_them(tmp_path)
 
 
 # ---- what is derived from a study's table -------------------------------------------------------
+
+
+def write_table(path, results):
+    write_rows(path, [as_text(asdict(result)) for result in results], "test")
 
 
 def trainings(rows):
@@ -396,9 +404,9 @@ def quick(**changes):
 
 
 def stored_as(value, root):
-    (root / "claims").mkdir(exist_ok=True)
+    (root / "results").mkdir(exist_ok=True)
     content = {"x": {"value": value, "minutes": 0.5, "command": "make claims ONLY=x STORE=1"}}
-    (root / "claims" / "measured.json").write_text(json.dumps(content))
+    (root / "results" / "measured.json").write_text(json.dumps(content))
     return root
 
 

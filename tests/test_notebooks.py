@@ -11,7 +11,7 @@ from disorder_landscape.chain import REPOSITORY
 
 sys.path.insert(0, str(REPOSITORY / "report"))  # as if run as a script
 
-from build import RunCells
+from build import run_cells
 
 
 @pytest.mark.parametrize(
@@ -20,7 +20,7 @@ from build import RunCells
 def test_notebook(path: Path, monkeypatch, capsys):
     monkeypatch.chdir(REPOSITORY)
     monkeypatch.setenv("MPLBACKEND", "Agg")
-    RunCells().preprocess(jupytext.read(path), {})
+    run_cells(jupytext.read(path), {})
     assert len(plt.get_fignums()) == 2  # left open, so that a notebook shows them
     plt.close("all")
     said = capsys.readouterr().out

@@ -27,7 +27,7 @@ SHIPPED = "shipped"
 FIVE, TEN = MODELS = "five_components_and_alpha", "ten_components"
 """The paper's two models, as they are named where they are shipped."""
 THIRTY = "thirty_components"
-"""A network to start inversions from, which is shipped too: configs/inversions."""
+"""A network to start inversions from, which is shipped too. No figure is drawn of it."""
 NOISY = "noisy"
 """The preset of networks for measurements with errors, which are shipped too: FIVE_noisy, …"""
 NOISY_FROM = 0.002
@@ -115,7 +115,7 @@ def preset_run(preset: str, build: str | Path = "build", model: str = FIVE) -> R
         If there is no such preset.
     """
     there = {path.stem for path in (REPOSITORY / "configs").glob("*.toml")}
-    presets = sorted({name.removesuffix(f"_{TEN}") for name in there})
+    presets = sorted({name.removesuffix(f"_{TEN}") for name in there - {THIRTY}})
     must = f"be one of {', '.join([*presets, SHIPPED])}"
     require(preset in (*presets, SHIPPED), "preset", must, f"it is '{preset}'")
     name = preset if model == FIVE else f"{preset}_{model}"

@@ -9,7 +9,14 @@ from pathlib import Path
 from typing import Annotated, Literal, TypeVar
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    RootModel,
+    ValidationError,
+    model_validator,
+)
 
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.model import disorder
@@ -113,7 +120,7 @@ class NetworkConfig(_Section):
     """Which network, and its size."""
 
     architecture: Literal["convolutional", "residual", "recurrent"] = "convolutional"
-    """The paper's network, a challenger, or the one that the paper tried first (S-II.2)."""
+    """The paper's network, one that it does not try, or the one that it tried first (S-II.2)."""
     width_fraction: Annotated[float, Field(gt=0, le=4)] = 1.0
     """Multiplies the filters of every convolution (Fig. S2); the paper's network is 1.0."""
 
@@ -233,7 +240,9 @@ def checked(
         return model.model_validate(_read_toml(path, name) if content is None else content)
     except ValidationError as error:
         first = error.errors()[0]
-        key = ".".join(str(part) for part in first["loc"]) or "the file"
+        # The tag of a union is no key.
+        place = first["loc"][1:] if issubclass(model, RootModel) else first["loc"]
+        key = ".".join(str(part) for part in place) or "the file"
         messages = {
             "extra_forbidden": "it has the unknown key {key}",
             "missing": "it lacks the key {key}",

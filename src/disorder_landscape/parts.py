@@ -15,8 +15,16 @@ PARTS = {
         "sklearn": "scikit-learn",
         "tensorflow": "TensorFlow",
     },
+    "dev": {
+        "arviz": "ArviZ",
+        "flint": "python-flint",
+        "iterative_ensemble_smoother": "iterative-ensemble-smoother",
+    },
 }
-"""For each extra the packages that it brings: the module that is imported, and its name."""
+"""For each extra the packages that it brings: the module that is imported, and its name.
+
+Of "dev" those that studies need.
+"""
 
 
 class MissingPartError(ImportError):

@@ -1,4 +1,4 @@
-"""The network is the paper's, layer for layer (Fig. 1, S-II.2)."""
+"""The convolutional network is the paper's, layer for layer (Fig. 1, S-II.2); others learn too."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from disorder_landscape.arguments import ArgumentError
-from disorder_landscape.learning.networks import build_network
+from disorder_landscape.learning.networks.build import build_network
 
 PAPER = [
     # class, kernel or pool, filters or nodes, shape of one realization behind it
@@ -98,7 +98,7 @@ def test_a_grid_too_small_for_the_poolings_is_refused(grid, axis):
 
 @pytest.mark.parametrize("architecture", ["residual", "recurrent"])
 @pytest.mark.parametrize("grid", [(8, 8, 5), (15, 15, 5), (9, 12, 3)])
-def test_challengers_take_any_grid_and_learn(architecture, grid):
+def test_other_networks_take_any_grid_and_learn(architecture, grid):
     network = build_network((*grid, 4), 3, 0.02, 1e-2, architecture=architecture)
     rng = np.random.default_rng(0)
     x = rng.normal(size=(16, *grid, 4)).astype(np.float32)

@@ -11,7 +11,7 @@ import xarray as xr
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.learning.mirror import mirrored_labels
 from disorder_landscape.learning.model import TrainedModel, load_model
-from disorder_landscape.learning.networks import build_network
+from disorder_landscape.learning.networks.build import build_network
 from disorder_landscape.learning.prediction import predict
 from disorder_landscape.learning.scaling import LabelScaler, conductance_array, label_names
 from disorder_landscape.model.disorder import potential_from_components

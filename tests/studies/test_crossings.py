@@ -12,7 +12,7 @@ from disorder_landscape.studies.crossings import (
     fit_power_law,
     learning_curves,
 )
-from disorder_landscape.studies.table import Result
+from disorder_landscape.studies.trainings_table import Result
 
 RESULT = Result(
     name="n", key="", dataset="", components=5, amplitude="sum", realizations=100,

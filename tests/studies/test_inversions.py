@@ -7,15 +7,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from disorder_landscape import ArgumentError
 from disorder_landscape.chain import FIVE, TEN, THIRTY, shipped_model
 from disorder_landscape.claims.claim import ResultMissingError
 from disorder_landscape.claims.derived import fixed_combinations, thirty_components, true_answers
-from disorder_landscape.claims.inversions import (
+from disorder_landscape.claims.study_tables import (
     SHOWN,
     accuracy_table,
     components_table,
-    coverage,
-    joint_coverage,
     uniqueness_table,
     unmodelled_table,
 )
@@ -25,11 +24,24 @@ from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.measurement import empty_measurement
 from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED
 from disorder_landscape.model.parameters import Nanowire
-from disorder_landscape.studies.components import measured_grid
-from disorder_landscape.studies.inversions import KEYS, Task, measured_wire, model_of, wrong
-from disorder_landscape.studies.rows import complete, missing, read_rows, write_rows
-from disorder_landscape.studies.uniqueness import NOISE, Setting, information_rows
+from disorder_landscape.studies import inversions, runner
+from disorder_landscape.studies.calibration import coverage, joint_coverage
+from disorder_landscape.studies.fresh_wires import Task, measured_wire, model_of, wrong
+from disorder_landscape.studies.plan import load_study
+from disorder_landscape.studies.rows import as_text, read_rows, write_rows
+from disorder_landscape.studies.study import Place
+from disorder_landscape.studies.uniqueness import Setting, information_rows
 from disorder_landscape.studies.unmodelled import KINDS, NOTHING, changed
+
+PLAN = """
+kind = "inversions"
+title = "some"
+[[wires]]
+models = ["five_components_and_alpha", "ten_components"]
+noise = [0, 0.01]
+count = 3
+"""
+NOISE = load_study("uniqueness").plan.noise
 
 
 def row(index, model=FIVE, noise=0.01, **changes):
@@ -53,40 +65,87 @@ def row(index, model=FIVE, noise=0.01, **changes):
     } | changes
 
 
-def test_what_is_there_is_not_done_again(tmp_path):
-    path = tmp_path / "rows.csv"
+def write_table(path, rows):
+    pd.DataFrame(rows).to_csv(path, index=False)
+    return path
+
+
+@pytest.fixture
+def study(tmp_path):
+    (tmp_path / "some.toml").write_text(PLAN)
+    return load_study(tmp_path / "some.toml")
+
+
+@pytest.fixture
+def place(tmp_path):
+    return Place(tmp_path, tmp_path / "build", 1)
+
+
+def test_what_is_there_is_not_done_again(study, place):
     tasks = [
-        Task(model, noise, i) for i in range(3) for noise in (0.0, 0.01) for model in (FIVE, TEN)
+        Task(model, noise, i) for model in (FIVE, TEN) for noise in (0.0, 0.01) for i in range(3)
     ]
-    assert missing(tasks, read_rows(path, KEYS), KEYS) == tasks
-    write_rows(pd.DataFrame([row(2), row(0, model=TEN), row(0, noise=0.0)]), path, KEYS, "test")
-    table = read_rows(path, KEYS)
-    assert list(table["index"]) == [0, 2, 0]  # sorted by model, noise and index
-    left = missing(tasks, table, KEYS)
+    assert study.tasks == study.missing(place) == tasks
+    write_table(study.table(place), [row(2), row(0, model=TEN), row(0, noise=0.0)])
+    left = study.missing(place)
     assert len(left) == len(tasks) - 3
     assert Task(FIVE, 0.01, 2) not in left
+
+
+def test_a_table_keeps_what_others_add_to_it(study, place, monkeypatch):
+    """Two runs that share a table, or one that was interrupted; and the order is the plan's."""
+    path, done = study.table(place), []
+    monkeypatch.setattr(runner, "each_result", lambda function, tasks, _: map(function, tasks))
+
+    def row_of(task):
+        done.append(task)
+        if len(done) == 2:
+            others = [as_text(row(7)), as_text(row(1, site_error=0.5))]
+            write_rows(path, [*read_rows(path), *others], "")
+        return row(task.index, model=task.model, noise=task.noise)
+
+    monkeypatch.setattr(inversions, "inversion_row", row_of)
+    runner.carry_out(study, place, limit=1)
+    runner.carry_out(study, place)
+    assert len(done) == len(set(done)) == 12
+    assert done[:4] == [Task(model, noise, 0) for model in (FIVE, TEN) for noise in (0.0, 0.01)]
+    rows = read_rows(path)
+    assert [study.key_of_row(one) for one in rows[:-1]] == [study.key(one) for one in study.tasks]
+    assert [one["site_error"] for one in rows].count("0.5") == 1
+    assert rows[-1]["index"] == "7"
     made = json.loads(path.with_suffix(".json").read_text())["provenance"]
     assert made["sha256"] == hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def test_a_table_keeps_what_others_add_to_it(tmp_path, monkeypatch):
-    """Two runs that share a table, or one that was interrupted."""
-    path, done = tmp_path / "rows.csv", []
-    there = "disorder_landscape.studies.rows"
-    monkeypatch.setattr(f"{there}.each_result", lambda function, tasks, _: map(function, tasks))
+def test_rows_of_an_interrupted_study_stay(study, place, monkeypatch):
+    monkeypatch.setattr(runner, "each_result", lambda function, tasks, _: map(function, tasks))
 
     def row_of(task):
-        done.append(task.index)
         if task.index == 1:
-            others = [row(5), row(1)]
-            write_rows(pd.concat([read_rows(path, KEYS), pd.DataFrame(others)]), path, KEYS, "")
-        return row(task.index)
+            raise KeyboardInterrupt
+        return row(task.index, model=task.model, noise=task.noise)
 
-    tasks = [Task(FIVE, 0.01, index) for index in range(3)]
-    complete(row_of, tasks[:1], path, KEYS, "test", 1)
-    complete(row_of, tasks, path, KEYS, "test", 1)
-    assert done == [0, 1, 2]
-    assert list(read_rows(path, KEYS)["index"]) == [0, 1, 2, 5]
+    monkeypatch.setattr(inversions, "inversion_row", row_of)
+    with pytest.raises(KeyboardInterrupt):
+        runner.carry_out(study, place)
+    assert [one["index"] for one in read_rows(study.table(place))] == ["0"] * 4
+
+
+def test_digits_that_are_there_stay(study, place):
+    """Pandas would write 1.0 for 1, and 0.1 for 0.10."""
+    path = study.table(place)
+    path.write_text("model,noise,index,x\nten_components,0.0,0,0.10\n")
+    write_rows(path, [*read_rows(path), as_text({"model": TEN, "x": np.float64(0.2)})], "")
+    assert path.read_text().splitlines()[1:] == [
+        "ten_components,0.0,0,0.10",
+        "ten_components,,,0.2",
+    ]
+
+
+def test_another_table_is_refused(study, place):
+    study.table(place).write_text("key,R2\n1,2\n")
+    with pytest.raises(ArgumentError, match="output must have a table of this study"):
+        study.missing(place)
 
 
 def test_the_table_counts_wrong_answers_by_their_verdict(tmp_path):
@@ -96,8 +155,7 @@ def test_the_table_counts_wrong_answers_by_their_verdict(tmp_path):
     rows[2] |= {"site_error": 0.1, "spread": 0.05}  # far off, and says so
     table = pd.DataFrame(rows)
     assert wrong(table).sum() == 2
-    path = tmp_path / "rows.csv"
-    write_rows(table, path, KEYS, "test")
+    path = write_table(tmp_path / "rows.csv", rows)
     line = accuracy_table(path).splitlines()[-1]
     assert "five components and alpha, 0.01 | 40 | 40 | 1, 1, 1e+02" in line
     assert "| 98 % | 1, 1 |" in line
@@ -123,7 +181,7 @@ def test_the_table_of_more_components_has_a_row_for_each_noise(tmp_path):
 
 def test_the_network_of_thirty_components_knows_something_of_fresh_wires():
     """It is asked on its own points of the grid, of wires and errors that it has not seen."""
-    observation, _ = measured_wire(measured_grid(30), noise=0.001, index=0)
+    observation, _ = measured_wire(load_study("components").plan.grid(30), noise=0.001, index=0)
     features = usable_network_features(model_of(shipped_model(THIRTY)), observation)
     assert features is not None
     assert features.on_grid.data.size == observation.data.size / 4
@@ -173,7 +231,7 @@ def test_claims_of_uniqueness(information, tmp_path):
     rows = [row(i, noise=0.0) for i in range(8)] + [row(9, noise=0.1, site_error=0.3)]
     rows[0] |= {"site_error": 0.1}
     rows[1] |= {"site_error": 0.1, "verdict": NOT_CONVERGED}
-    write_rows(pd.DataFrame(rows), path, KEYS, "test")
+    write_table(path, rows)
     assert true_answers(path) == pytest.approx(6 / 7)
     table = pd.DataFrame([one for rows in information.values() for one in rows])
     table.loc[table["noise"] == 0.01, "fixed"] = [4, 3]
@@ -202,7 +260,7 @@ def test_joint_coverage_sees_one_axis_that_is_wrong(too_small, lost):
     assert np.all(missing > lost) if lost else np.all(abs(missing) < 0.03)
 
 
-def test_joint_coverage_takes_the_effective_sample_size_into_account():
+def test_joint_coverage_knows_that_populations_have_few_members():
     """Their covariance is too narrow along one axis or another, and their mean is off."""
     rng, size, rows = np.random.default_rng(6), 40, []
     for truth in rng.normal(size=(1000, 7)):
@@ -212,15 +270,16 @@ def test_joint_coverage_takes_the_effective_sample_size_into_account():
         rows.append({"mahalanobis": square, "z_scores": "0 0 0 0 0 0 0"})
     table = pd.DataFrame(rows)
     nominal = np.array([0.5, 0.8, 0.95])
-    right, none = (table.assign(effective_sample_size=n) for n in (size, np.nan))
-    np.testing.assert_allclose(joint_coverage(right), nominal, atol=0.04)
-    assert np.all(joint_coverage(none) < nominal - 0.06)
+    np.testing.assert_allclose(
+        joint_coverage(table.assign(effective_sample_size=size)), nominal, atol=0.04
+    )
+    assert np.all(joint_coverage(table.assign(effective_sample_size=np.nan)) < nominal - 0.06)
 
 
 @pytest.fixture(scope="module")
 def information():
     return {
-        points: information_rows(Setting(components=3, points=points, biases=3, index=0))
+        points: information_rows(Setting(components=3, points=points, biases=3, index=0), NOISE)
         for points in (4, 7)
     }
 

@@ -8,9 +8,12 @@ import pytest
 
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.chain import REPOSITORY
-from disorder_landscape.studies.plan import PlannedRun, load_study
+from disorder_landscape.studies.plan import load_study, study_names
+from disorder_landscape.studies.study import Place
+from disorder_landscape.studies.trainings import PlannedRun
 
 PLAN = """
+kind = "trainings"
 title = "R² over something"
 [base.dataset]
 realizations = 100
@@ -38,30 +41,32 @@ def plan(tmp_path) -> Path:
 def test_every_combination_of_a_grid_is_a_run(plan):
     study = load_study(plan)
     assert study.name == "something"
-    settings = [(run.config.training.seed, run.config.network.width_fraction) for run in study.runs]
+    settings = [
+        (run.config.training.seed, run.config.network.width_fraction) for run in study.tasks
+    ]
     assert settings[:6] == [(s, w) for s in (0, 1) for w in (0.1, 0.2, 0.3)]
-    assert [run.name for run in study.runs] == ["ours"] * 6 + ["the paper's"]
-    assert [run.config.training.mirror for run in study.runs] == [True] * 6 + [False]
-    assert all(run.config.dataset.realizations == 100 for run in study.runs)
+    assert [run.name for run in study.tasks] == ["ours"] * 6 + ["the paper's"]
+    assert [run.config.training.mirror for run in study.tasks] == [True] * 6 + [False]
+    assert all(run.config.dataset.realizations == 100 for run in study.tasks)
 
 
 def test_what_goes_together_goes_through_together(plan):
     together = '[runs.together]\n"training.realizations" = [10, 20]\n"training.passes" = [4, 2]\n'
     plan.write_text(PLAN.replace("[runs.grid]\n", together + "[runs.grid]\n"))
-    runs = [run.config.training for run in load_study(plan).runs[:12]]
+    runs = [run.config.training for run in load_study(plan).tasks[:12]]
     assert [(run.realizations, run.passes) for run in runs] == [(10, 4)] * 6 + [(20, 2)] * 6
     assert [run.seed for run in runs] == ([0] * 3 + [1] * 3) * 2
 
 
 def test_keys_tell_runs_apart_by_settings_and_not_by_name(plan):
     study = load_study(plan)
-    keys = {run.key for run in study.runs}
+    keys = {run.key for run in study.tasks}
     assert len(keys) == 7
-    assert PlannedRun("another name", study.runs[0].config).key == study.runs[0].key
+    assert PlannedRun("another name", study.tasks[0].config).key == study.tasks[0].key
 
 
 def test_how_figures_are_drawn_does_not_matter_to_a_key(plan):
-    run = load_study(plan).runs[0]
+    run = load_study(plan).tasks[0]
     figures = run.config.figures.model_copy(update={"mu_points": 5})
     other = run.config.model_copy(update={"figures": figures})
     assert PlannedRun(run.name, other).key == run.key
@@ -72,9 +77,11 @@ def test_how_figures_are_drawn_does_not_matter_to_a_key(plan):
     [
         ("mirror = true", "mirrors = true", "unknown key training.mirrors"),
         ("realizations = 100", "realizations = 0", "dataset.realizations is wrong"),
-        ('"training.seed" = [0, 1]', '"training.seed" = [0, 0]', "must have different runs"),
+        ('"training.seed" = [0, 1]', '"training.seed" = [0, 0]', "must have different tasks"),
         ("[base.training]", "[basis.training]", "unknown key basis"),
         ("title =", "title", "TOML"),
+        ('"trainings"', '"training"', "'training' found using 'kind'"),
+        ('kind = "trainings"', "", "discriminator 'kind'"),
         (
             "[runs.grid]\n",
             '[runs.together]\n"training.passes" = [1]\n"training.epochs" = []\n[runs.grid]\n',
@@ -93,8 +100,23 @@ def test_a_plan_that_is_not_there_is_refused(tmp_path):
         load_study(tmp_path / "nonesuch.toml")
 
 
-@pytest.mark.parametrize(
-    "path", sorted((REPOSITORY / "configs" / "studies").glob("*.toml")), ids=lambda path: path.stem
-)
-def test_the_studies_of_this_repository_can_be_read(path):
-    assert load_study(path).runs
+@pytest.mark.parametrize("name", study_names())
+def test_the_studies_of_this_repository_can_be_read(name):
+    assert load_study(name).command == f"landscape study {name}"
+
+
+@pytest.mark.parametrize("name", sorted(set(study_names()) - {"accuracy", "odd_wires"}))
+def test_the_tables_of_this_repository_are_complete(name, tmp_path):
+    """Those two leave numbers of a table that lies in build."""
+    assert not load_study(name).missing(Place(REPOSITORY / "results", tmp_path, 1))
+
+
+def test_the_network_without_noise_is_that_of_the_recipes():
+    """… so that it is trained once."""
+    keys = {task.key for task in load_study("recipes").tasks}
+    assert [task.run.key in keys for task in load_study("noise").tasks] == [True] + [False] * 3
+
+
+def test_a_name_that_is_none_is_refused():
+    with pytest.raises(ArgumentError, match=r"one of accuracy, architectures, .* it is 'none'"):
+        load_study("none")

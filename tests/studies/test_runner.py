@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import json
+import re
+
 import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 from disorder_landscape.cli import app
-from disorder_landscape.studies import runner
+from disorder_landscape.studies import trainings
 from disorder_landscape.studies.plan import load_study
-from disorder_landscape.studies.runner import run_study
-from disorder_landscape.studies.table import read_table
+from disorder_landscape.studies.runner import carry_out
+from disorder_landscape.studies.study import Place
+from disorder_landscape.studies.trainings_table import read_table
 
 PLAN = """
+kind = "trainings"
 title = "tiny"
 [base.dataset]
 realizations = 12
@@ -39,50 +44,72 @@ set = { training = { mirror = true, compress_inputs = true, noise = 0.1 } }
 
 
 @pytest.fixture(scope="module")
-def carried_out(tmp_path_factory):
+def place(tmp_path_factory):
     folder = tmp_path_factory.mktemp("study")
-    (folder / "tiny.toml").write_text(PLAN)
-    study = load_study(folder / "tiny.toml")
-    return folder, study, run_study(study, folder / "tiny.csv", folder / "build", workers=1)
+    return Place(folder, folder / "build", 1)
+
+
+@pytest.fixture(scope="module")
+def carried_out(place):
+    """Return the study and its table."""
+    (place.output / "tiny.toml").write_text(PLAN)
+    study = load_study(place.output / "tiny.toml")
+    carry_out(study, place)
+    return study, read_table(study.table(place))
 
 
 def test_the_table_holds_every_run_with_its_settings(carried_out):
-    folder, study, results = carried_out
-    assert [result.key for result in results] == [run.key for run in study.runs]
+    study, results = carried_out
+    assert [result.key for result in results] == [run.key for run in study.tasks]
     assert [result.realizations for result in results] == [3, 4, 6]
     assert [result.mirror for result in results] == [False, False, True]
     assert {result.test_realizations for result in results} == {6}
     assert {result.delta_alpha for result in results} == {None}
     assert results[2].noise == 0.1
     assert np.isfinite([result.R2 for result in results]).all()
-    assert read_table(folder / "tiny.csv") == results
 
 
-def test_what_is_there_is_not_made_again(carried_out, monkeypatch):
-    folder, study, results = carried_out
+def test_what_is_there_is_not_made_again(carried_out, place, monkeypatch):
+    study, results = carried_out
     made = []
-    carry_out = runner.carry_out
+    trained = trainings.trained
 
-    def count(run, *arguments):
+    def count(run, place):
         made.append(run.key)
-        return carry_out(run, *arguments)
+        return trained(run, place)
 
-    monkeypatch.setattr(runner, "carry_out", count)
-    assert run_study(study, folder / "tiny.csv", folder / "build", workers=1) == results
+    monkeypatch.setattr(trainings, "trained", count)
+    carry_out(study, place)
     assert not made
-    lines = (folder / "tiny.csv").read_text().splitlines(keepends=True)
-    (folder / "tiny.csv").write_text("".join(lines[:2]))  # as after an interruption
-    assert run_study(study, folder / "tiny.csv", folder / "build", workers=1) == results
-    assert made == [run.key for run in study.runs[1:]]
+    table = study.table(place)
+    lines = table.read_text().splitlines(keepends=True)
+    other = lines[1].replace(study.tasks[0].key, "of a plan that was")
+    table.write_text("".join([*lines[:2], other]))  # as after an interruption
+    carry_out(study, place, limit=1)
+    assert made == [study.tasks[1].key]
+    carry_out(study, place)
+    assert read_table(table) == results
+    assert made == [run.key for run in study.tasks[1:]]
 
 
-def test_the_command_writes_the_table(carried_out, tmp_path):
-    folder, _, _ = carried_out
-    arguments = ["study", folder / "tiny.toml", "-o", tmp_path, "--build", folder / "build"]
-    said = CliRunner().invoke(app, [*map(str, arguments), "--workers", "1"])
+def test_the_command_writes_the_table(carried_out, place, tmp_path):
+    _, results = carried_out
+    options = ["-o", tmp_path, "--build", place.build, "--workers", 1]
+    command = ["study", place.output / "tiny.toml", *options]
+    for said_last in ("3 tasks, 3 added, 0 missing", "3 tasks, nothing was missing"):
+        said = CliRunner().invoke(app, [*map(str, command)])
+        assert said.exit_code == 0, said.output
+        assert said_last in said.output
+    assert read_table(tmp_path / "tiny.csv") == results
+    made = json.loads((tmp_path / "tiny.json").read_text())["provenance"]
+    assert made["command"] == f"landscape study {place.output / 'tiny.toml'}"
+
+
+def test_all_studies_are_listed(tmp_path):
+    said = CliRunner().invoke(app, ["study", "--list", "--build", str(tmp_path)])
     assert said.exit_code == 0, said.output
-    assert "3 trainings" in said.output
-    assert read_table(tmp_path / "tiny.csv") == read_table(folder / "tiny.csv")
+    assert re.search(r"^recipes +5 of +5  R² of the 5\+1 model", said.output, re.MULTILINE)
+    assert re.search(r"^odd_wires +0 of +4000 ", said.output, re.MULTILINE)
 
 
 def test_a_plan_that_is_not_there_is_one_sentence(tmp_path):

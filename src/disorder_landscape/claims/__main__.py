@@ -142,7 +142,7 @@ def _parse(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument(
         "--store",
         action="store_true",
-        help="keep what has been measured in claims/measured.json, as the stored values",
+        help="keep what has been measured in results/measured.json, as the stored values",
     )
     parser.add_argument(
         "--write-pages",

@@ -1,4 +1,4 @@
-"""A claim of the paper, as claims/claims.toml states it, and the rule that judges a value by it."""
+"""A claim of the paper, as results/claims.toml states it, and the rule that judges a value."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.chain import REPOSITORY
 
-CLAIMS_FILE = REPOSITORY / "claims" / "claims.toml"
+CLAIMS_FILE = REPOSITORY / "results" / "claims.toml"
 
 Sense = Literal["at least", "at most", "within", "exactly"]
 Verdict = Literal["reproduced", "differs", "not tested"]
@@ -57,7 +57,7 @@ class Stored(_Table):
 
 
 class Measured(_Table):
-    """Our value from a quick measurement, which is stored in claims/measured.json."""
+    """Our value from a quick measurement, which is stored in results/measured.json."""
 
     measure: str
     """Name of a function of `claims.measurements`."""

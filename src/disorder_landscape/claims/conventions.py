@@ -10,9 +10,9 @@ from disorder_landscape.arguments import require
 from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.claim import claim_of, load_claims
 from disorder_landscape.claims.table import markdown, number
-from disorder_landscape.studies.table import Result, read_table
+from disorder_landscape.studies.trainings_table import Result, read_table
 
-TABLE = REPOSITORY / "claims" / "conventions.csv"
+TABLE = REPOSITORY / "results" / "conventions.csv"
 REFERENCE = "reference"
 """The run that all others differ from in one convention."""
 COLUMNS = ("convention", "R²", "change", "ΔV (meV)", "ΔV/√(1−R²)", "Δα (meV nm)", "Δα/√(1−R²)")

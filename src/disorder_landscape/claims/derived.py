@@ -24,8 +24,8 @@ from disorder_landscape.studies.crossings import (
     learning_curves,
     realizations_needed,
 )
-from disorder_landscape.studies.inversions import wrong
-from disorder_landscape.studies.table import read_table
+from disorder_landscape.studies.fresh_wires import wrong
+from disorder_landscape.studies.trainings_table import read_table
 
 SMALL_NOISE = 0.01
 """In e²/h."""

@@ -11,8 +11,8 @@ import time
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from disorder_landscape import stopwatches
-from disorder_landscape.bench import DATASETS, PAPER_ENERGIES
+from disorder_landscape.bench import stopwatches
+from disorder_landscape.bench.measurements import DATASETS, PAPER_ENERGIES
 from disorder_landscape.claims.measurements_of_models import sets_and_training_hours
 from disorder_landscape.machine import cores
 from disorder_landscape.model import disorder

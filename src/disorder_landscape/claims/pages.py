@@ -11,7 +11,7 @@ from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.claim import load_claims
 from disorder_landscape.claims.conventions import conventions_table
 from disorder_landscape.claims.findings import stored_findings
-from disorder_landscape.claims.inversions import (
+from disorder_landscape.claims.study_tables import (
     accuracy_table,
     components_table,
     uniqueness_table,

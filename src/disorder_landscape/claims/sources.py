@@ -1,11 +1,11 @@
 """Our values, from the files that studies have left, and how those files were made.
 
-A study leaves a table, claims/<study>.csv, and claims/<study>.json with an object `provenance`: the
-command, and what else is known (minutes, machine, versions, `sha256` of the table, which is checked
-then). Where there is no such object, the plan of the study, configs/studies/<study>.toml, says what
-its command is, and the column `minutes` how long it took. Files under data_small have checksums in
-data_small/SHA256SUMS, and a model's config.json says what made it. Quick measurements are kept in
-claims/measured.json, each with machine, versions and minutes.
+A study leaves a table, results/<study>.csv, and results/<study>.json with an object `provenance`:
+the command, and what else is known (minutes, machine, versions, `sha256` of the table, which is
+checked then). Where there is no such object, the plan of the study, configs/studies/<study>.toml,
+says what its command is, and the column `minutes` how long it took. Files under data_small have
+checksums in data_small/SHA256SUMS, and a model's config.json says what made it. Quick measurements
+are kept in results/measured.json, each with machine, versions and minutes.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from disorder_landscape.claims.claim import Claim, Measured, ResultMissingError,
 from disorder_landscape.claims.derived import DERIVED
 from disorder_landscape.files import read_json, write_json
 
-MEASURED_FILE = "claims/measured.json"
+MEASURED_FILE = "results/measured.json"
 """What `make claims` has measured before, from the root of the repository."""
 
 _REDUCE: dict[str, Callable[[list[float]], float]] = {
@@ -102,7 +102,7 @@ def _made_by_study(path: Path, root: Path) -> dict[str, Any]:
         if minutes:
             made["minutes"] = sum(minutes)
         if plan.exists():
-            made["command"] = f"landscape study {plan.relative_to(root).as_posix()}"
+            made["command"] = f"landscape study {plan.stem}"
     if beside.exists():
         made.update(_read_json(beside).get("provenance", {}))
     if path.suffix == ".csv" and "sha256" in made:

@@ -28,7 +28,7 @@ from disorder_landscape.learning.ensembles import combine, member_configs
 from disorder_landscape.learning.examples import Examples, chosen, split
 from disorder_landscape.learning.metrics import Scores, score
 from disorder_landscape.learning.model import METRICS, TrainedModel, on_grid_of, read_model_file
-from disorder_landscape.learning.networks import build_network
+from disorder_landscape.learning.networks.build import build_network
 from disorder_landscape.learning.scaling import (
     conductance_array,
     label_array,

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.stats import linregress
 
 from disorder_landscape.model.parameters import FloatArray
-from disorder_landscape.studies.table import Result
+from disorder_landscape.studies.trainings_table import Result
 
 R2_AIMED_AT = 0.77
 """Of Fig. 2."""

@@ -1,4 +1,4 @@
-"""Errors of measurement: what R² a network keeps when the conductances of the test set have them.
+"""Kind "noise": what R² a network keeps when the conductances of the test set have errors.
 
 The paper: Gaussian errors of 0.01, 0.05 and 0.1 e²/h leave R² = 0.99, 0.98 and 0.97. It does not
 say whether the training data had errors too, so both are measured, and local and nonlocal
@@ -7,25 +7,82 @@ conductances apart.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
 import numpy as np
 import xarray as xr
 
+from disorder_landscape.chain import Run, read_test_set
 from disorder_landscape.learning.metrics import score
-from disorder_landscape.learning.model import TrainedModel
+from disorder_landscape.learning.model import TrainedModel, load_model
 from disorder_landscape.learning.scaling import (
     CHANNELS,
     ConductanceArray,
     conductance_array,
     label_array,
 )
+from disorder_landscape.studies.fresh_wires import Noise
+from disorder_landscape.studies.study import Place
+from disorder_landscape.studies.trainings import PlannedRun, TrainedPlan, model_folder, trained
 
-NOISE = (0.0, 0.001, 0.01, 0.05, 0.1)
-"""Standard deviations in e²/h; 0.001 is the noise floor of the experiment that the paper cites."""
 CHANNELS_WITH_ERRORS = {
     "all": CHANNELS,
     "local": ("G_LL", "G_RR"),
     "nonlocal": ("G_LR", "G_RL"),
 }
+NOISY = "noisy"
+"""Name of the runs whose test wires have the errors of their training wires, no others."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """One network: the name of its runs, and the errors in e²/h that it is trained with."""
+
+    training: str
+    training_noise: float
+    run: PlannedRun
+
+
+class NoisePlan(TrainedPlan):
+    """Networks whose test wires have errors of several sizes."""
+
+    kind: Literal["noise"]
+    noise: tuple[Noise, ...]
+    """Standard deviations in e²/h."""
+
+    keys: ClassVar = ("training", "training_noise")
+
+    def tasks(self) -> Sequence[Task]:
+        """Return the networks."""
+        return [Task(run.name, run.config.training.noise, run) for run in self.trainings()]
+
+    def rows(self, task: Task, place: Place) -> list[dict[str, object]]:
+        """Return R² over the errors of the test wires, by the channels that have them.
+
+        The minutes of the training stand in the first row.
+        """
+        minutes = trained(task.run, place).minutes
+        config = task.run.config
+        # A run's dataset is beside its folder.
+        wires = read_test_set(Run(task.training, config, place.build / task.training))
+        noise = [task.training_noise] if task.training == NOISY else self.noise
+        R2 = r2_with_errors(load_model(model_folder(task.run, place.build)), wires, noise)
+        rows: list[dict[str, object]] = [
+            {
+                "training": task.training,
+                "training_noise": task.training_noise,
+                "channels": channels,
+                "noise": one,
+                "R2": round(float(R2.sel(channels=channels, noise=one)), 4),
+                "minutes": None,
+            }
+            for channels in CHANNELS_WITH_ERRORS
+            for one in noise
+        ]
+        rows[0]["minutes"] = minutes
+        return rows
 
 
 def with_errors(
@@ -49,7 +106,9 @@ def with_errors(
     return np.asarray(X + np.float32(noise) * on * errors)
 
 
-def r2_with_errors(model: TrainedModel, test: xr.Dataset, seed: int = 0) -> xr.Dataset:
+def r2_with_errors(
+    model: TrainedModel, test: xr.Dataset, noises: Sequence[float], seed: int = 0
+) -> xr.DataArray:
     """Return R² of a network over the errors of its test set's conductances.
 
     Parameters
@@ -57,13 +116,15 @@ def r2_with_errors(model: TrainedModel, test: xr.Dataset, seed: int = 0) -> xr.D
     model : TrainedModel
     test : Dataset
         Conductances with a dim realization, components and alpha, as `chain.read_test_set` gives.
+    noises : sequence of float
+        In e²/h.
     seed : int
         Of the errors.
 
     Returns
     -------
-    xarray.Dataset
-        R2 (channels, noise), noise in e²/h.
+    xarray.DataArray, dims (channels, noise)
+        Noise in e²/h.
     """
     dataset = model.config.dataset
     X, Y = conductance_array(test), label_array(test, model.labels.names)
@@ -76,12 +137,11 @@ def r2_with_errors(model: TrainedModel, test: xr.Dataset, seed: int = 0) -> xr.D
                     model.labels,
                     dataset.sites,
                 ).r2
-                for noise in NOISE
+                for noise in noises
             ]
             for channels in CHANNELS_WITH_ERRORS.values()
         ]
     )
-    return xr.Dataset(
-        {"R2": (("channels", "noise"), R2)},
-        coords={"channels": list(CHANNELS_WITH_ERRORS), "noise": list(NOISE)},
+    return xr.DataArray(
+        R2, {"channels": list(CHANNELS_WITH_ERRORS), "noise": list(noises)}, ("channels", "noise")
     )

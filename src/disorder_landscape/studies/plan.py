@@ -1,112 +1,141 @@
-"""A study's plan: the trainings it compares, read from a TOML file in configs/studies."""
+"""Plans: TOML files in configs/studies, one of each study, read by their kind."""
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Iterator, Mapping
-from copy import deepcopy
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import product
+from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, RootModel
 
-from disorder_landscape.arguments import require
-from disorder_landscape.config import Config, checked
+from disorder_landscape.arguments import ArgumentError, require
+from disorder_landscape.chain import REPOSITORY
+from disorder_landscape.config import checked
+from disorder_landscape.studies.accuracy import AccuracyPlan
+from disorder_landscape.studies.calibration import CalibrationPlan
+from disorder_landscape.studies.components import ComponentsPlan
+from disorder_landscape.studies.inversions import InversionsPlan
+from disorder_landscape.studies.noise import NoisePlan
+from disorder_landscape.studies.odd_wires import OddWiresPlan
+from disorder_landscape.studies.rows import Row, read_rows
+from disorder_landscape.studies.smoothers import SmoothersPlan
+from disorder_landscape.studies.starts import StartsPlan
+from disorder_landscape.studies.study import Place, Plan
+from disorder_landscape.studies.trainings import TrainingsPlan
+from disorder_landscape.studies.uniqueness import UniquenessPlan
+from disorder_landscape.studies.unmodelled import UnmodelledPlan
+from disorder_landscape.studies.verification import VerificationPlan
+
+PLANS = REPOSITORY / "configs" / "studies"
+
+AnyPlan = (
+    AccuracyPlan
+    | CalibrationPlan
+    | ComponentsPlan
+    | InversionsPlan
+    | NoisePlan
+    | OddWiresPlan
+    | SmoothersPlan
+    | StartsPlan
+    | TrainingsPlan
+    | UniquenessPlan
+    | UnmodelledPlan
+    | VerificationPlan
+)
+"""A plan of any kind, as its key `kind` says."""
 
 
-class _Runs(BaseModel):
-    """Trainings that have a name and some settings in common."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-    name: str
-    set: dict[str, dict[str, Any]] = Field(default_factory=dict)
-    """Sections and keys of a configuration, instead of the base's."""
-    together: dict[str, list[Any]] = Field(default_factory=dict)
-    """Lists of values for "section.key", as long as each other, which go through together."""
-    grid: dict[str, list[Any]] = Field(default_factory=dict)
-    """Lists of values for "section.key"; every combination, also with `together`, is a training."""
-
-    @model_validator(mode="after")
-    def _as_long_as_each_other(self) -> _Runs:
-        if len({len(values) for values in self.together.values()}) > 1:
-            raise ValueError("together must have lists that are as long as each other")
-        return self
+class _File(RootModel[Annotated[AnyPlan, Field(discriminator="kind")]]):
+    """A plan's file."""
 
 
-class _Plan(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-    title: str
-    base: dict[str, dict[str, Any]]
-    """A configuration, from which each training differs."""
-    runs: list[_Runs]
-
-
-@dataclass(frozen=True)
-class PlannedRun:
-    """One training of a study.
+@dataclass(frozen=True, eq=False)
+class Study:
+    """A plan with its name.
 
     Parameters
     ----------
     name : str
-        Of the group of runs it belongs to.
-    config : Config
+        The file's.
+    plan : Plan
+    command : str
+        What carries it out.
     """
 
     name: str
-    config: Config
+    plan: Plan
+    command: str
 
-    @property
-    def key(self) -> str:
-        """What tells it from every other training, in any study: 12 hexadecimal digits."""
-        config = self.config
-        parts = [
-            config.dataset.hash,
-            str(config.dataset.realizations),
-            config.network.model_dump_json(exclude_defaults=True),
-            config.training.model_dump_json(exclude_defaults=True),
-        ]
-        return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:12]
+    @cached_property
+    def tasks(self) -> Sequence[Any]:
+        """The plan's tasks."""
+        return self.plan.tasks()
+
+    def table(self, place: Place) -> Path:
+        """Return the file of the table."""
+        return self.plan.folder(place) / f"{self.name}.csv"
+
+    def missing(self, place: Place) -> list[Any]:
+        """Return the tasks that the table has no row of."""
+        there = {self.key_of_row(row) for row in read_rows(self.table(place))}
+        return [task for task in self.tasks if self.key(task) not in there]
+
+    def key(self, task: Any) -> tuple[Any, ...]:
+        """Return what tells a task from every other."""
+        return tuple(getattr(task, name) for name in self.plan.keys)
+
+    def key_of_row(self, row: Row) -> tuple[Any, ...]:
+        """Return the key of the task that a row is of.
+
+        Raises
+        ------
+        ArgumentError
+            If it lacks a column, or there is another kind of thing in it.
+        """
+        try:
+            return tuple(
+                of(row[name]) for name, of in zip(self.plan.keys, self._types, strict=True)
+            )
+        except (KeyError, ValueError):
+            must = f"have a table of this study, with the columns {', '.join(self.plan.keys)}"
+            raise ArgumentError("output", must, f"'{self.name}.csv' has not") from None
+
+    @cached_property
+    def _types(self) -> list[type]:
+        return [type(value) for value in self.key(self.tasks[0])]
 
 
-@dataclass(frozen=True)
-class Study:
-    """The trainings of a study, by their names' order in the file."""
+def load_study(name: str | Path) -> Study:
+    """Read a study's plan.
 
-    name: str
-    title: str
-    runs: tuple[PlannedRun, ...]
-
-
-def load_study(path: str | Path) -> Study:
-    """Read a study's TOML file.
+    Parameters
+    ----------
+    name : str or path
+        Of a plan in configs/studies, without its ending, or a TOML file.
 
     Raises
     ------
     ArgumentError
-        If it cannot be read, has an unknown or invalid key, or two of its trainings are the same.
+        If it cannot be read, has an unknown or invalid key, or two of its tasks are the same.
     """
-    path = Path(path)
-    plan = checked(_Plan, path, "study")
-    runs = tuple(run for group in plan.runs for run in _expand(group, plan.base, path))
-    keys = [run.key for run in runs]
-    twice = sorted({run.name for run in runs if keys.count(run.key) > 1})
-    require(not twice, "study", "have different runs", f"'{path}' has {', '.join(twice)} twice")
-    return Study(path.stem, plan.title, runs)
+    path = Path(name)
+    if path.suffix != ".toml":
+        must = f"be a TOML file, or one of {', '.join(study_names())}"
+        require(str(name) in study_names(), "study", must, f"it is '{name}'")
+        path = PLANS / f"{name}.toml"
+    ours = path.resolve().parent == PLANS
+    command = f"landscape study {path.stem if ours else path}"
+    study = Study(path.stem, checked(_File, path, "study").root, command)
+    require(len(study.tasks) > 0, "study", "have tasks", f"'{path}' has none")
+    (key, times), *_ = Counter(study.key(task) for task in study.tasks).most_common(1)
+    said = ", ".join(map(str, key))
+    require(times == 1, "study", "have different tasks", f"'{path}' has {said} twice")
+    return study
 
 
-def _expand(group: _Runs, base: Mapping[str, Any], path: Path) -> Iterator[PlannedRun]:
-    """Yield a training for every combination of the group's grid and what goes together."""
-    names = [*group.together, *group.grid]
-    together = list(zip(*group.together.values(), strict=True)) or [()]
-    for first, *others in product(together, *group.grid.values()):
-        content = deepcopy(dict(base))
-        for section, settings in group.set.items():
-            content.setdefault(section, {}).update(settings)
-        for name, value in zip(names, (*first, *others), strict=True):
-            section, _, key = name.partition(".")
-            content.setdefault(section, {})[key] = value
-        yield PlannedRun(group.name, checked(Config, path, "study", content))
+def study_names() -> list[str]:
+    """Return the names of the plans in configs/studies."""
+    return sorted(path.stem for path in PLANS.glob("*.toml"))

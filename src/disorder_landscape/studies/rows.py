@@ -1,81 +1,70 @@
-"""Tables of studies that are no trainings: a row for each task, found again by its keys."""
+"""Tables of studies, as CSV: text stays as it is, so that what is there keeps its digits."""
 
 from __future__ import annotations
 
-import argparse
+import csv
 import hashlib
-from collections.abc import Callable, Sequence
+import io
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TypeVar
+from typing import Any
 
-import pandas as pd
-from tqdm import tqdm
+import numpy as np
 
 from disorder_landscape.dataset.store import provenance
-from disorder_landscape.files import replacing, write_json
-from disorder_landscape.workers import each_result
+from disorder_landscape.files import read_json, replacing, write_json
+from disorder_landscape.model.parameters import FloatArray
 
-Task = TypeVar("Task")
-
-
-def read_rows(path: Path, keys: list[str]) -> pd.DataFrame:
-    """Return the table; empty if there is none."""
-    return pd.read_csv(path) if path.exists() else pd.DataFrame(columns=keys)
+Row = dict[str, str]
 
 
-def write_rows(table: pd.DataFrame, path: Path, keys: list[str], command: str) -> None:
-    """Write a table, sorted, and beside it what made it (JSON, with the table's checksum)."""
-    content = table.sort_values(keys).to_csv(index=False).encode()
+def read_rows(path: Path) -> list[Row]:
+    """Return the rows of a table; none if there is no file."""
+    if not path.exists():
+        return []
+    with open(path, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def write_rows(path: Path, rows: Sequence[Row], command: str) -> None:
+    """Write a table, and beside it what made it (JSON, with the table's checksum)."""
+    text = io.StringIO(newline="")
+    columns = list(dict.fromkeys(column for row in rows for column in row))
+    writer = csv.DictWriter(text, columns, restval="", lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    content = text.getvalue().encode()
     with replacing(path) as temporary:
         temporary.write_bytes(content)
     made = {**provenance(command), "sha256": hashlib.sha256(content).hexdigest()}
-    write_json(path.with_suffix(".json"), {"provenance": made})
+    write_json(path.with_suffix(".json"), {**stored_numbers(path), "provenance": made})
 
 
-def add_rows(rows: pd.DataFrame, path: Path, keys: list[str], command: str) -> None:
-    """Write rows into a table, and keep those that others have added to it in the meantime."""
-    table = pd.concat([read_rows(path, keys), rows], ignore_index=True)
-    write_rows(table.drop_duplicates(keys), path, keys, command)
+def stored_numbers(path: Path) -> dict[str, Any]:
+    """Return what the JSON file beside a table holds; nothing if there is none."""
+    beside = path.with_suffix(".json")
+    return read_json(beside, "output", "hold results of studies") if beside.exists() else {}
 
 
-def missing(tasks: Sequence[Task], table: pd.DataFrame, keys: list[str]) -> list[Task]:
-    """Return the tasks that the table has no row of; the keys are attributes of a task."""
-    there = set(table[keys].itertuples(index=False, name=None))
-    return [task for task in tasks if tuple(getattr(task, key) for key in keys) not in there]
+def as_text(row: Mapping[str, object]) -> Row:
+    """Return a row as it is written: empty for None and NaN."""
+    return {name: _text(value) for name, value in row.items()}
 
 
-def study_parser(doc: str | None, output: Path, noise: Sequence[float]) -> argparse.ArgumentParser:
-    """Return the command line of a study that `complete` carries out: where, at which noise, how.
-
-    Parameters
-    ----------
-    doc : str, optional
-        The script's own, for --help.
-    output : Path
-        The table, if none is named.
-    noise : sequence of float
-        In e²/h, if none is named.
-    """
-    parser = argparse.ArgumentParser(
-        description=doc, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("-o", "--output", type=Path, default=output)
-    parser.add_argument("--noise", nargs="+", type=float, default=list(noise))
-    parser.add_argument("--workers", type=int, default=2)
-    return parser
+def _text(value: object) -> str:
+    if isinstance(value, np.generic):
+        value = value.item()
+    return "" if value is None or value != value else str(value)
 
 
-def complete(
-    function: Callable[[Task], dict[str, object]],
-    tasks: Sequence[Task],
-    path: Path,
-    keys: list[str],
-    command: str,
-    workers: int,
-) -> None:
-    """Carry out the tasks that a table has no row of, and write each row as it comes."""
-    left = missing(tasks, read_rows(path, keys), keys)
-    with tqdm(total=len(tasks), initial=len(tasks) - len(left), unit=" wires") as bar:
-        for row in each_result(function, left, workers):
-            add_rows(pd.DataFrame([row]), path, keys, command)
-            bar.update()
+def rounded(row: Mapping[str, object]) -> dict[str, object]:
+    """Return a row with five digits of each number that is not whole."""
+    return {
+        key: float(f"{value:.5g}") if isinstance(value, float | np.ndarray) else value
+        for key, value in row.items()
+    }
+
+
+def numbers(rows: Iterable[Row], column: str) -> FloatArray:
+    """Return a column's numbers, shape (row,); NaN where there is none."""
+    return np.array([float(row[column] or np.nan) for row in rows])

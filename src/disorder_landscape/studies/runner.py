@@ -1,92 +1,120 @@
-"""Carry a study out: what its table lacks is generated, trained and scored."""
+"""Carry a study out: the tasks that its table has no row of, and what follows from the whole."""
 
 from __future__ import annotations
 
-import math
+import time
+from collections.abc import Iterable, Iterator, Sequence
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 from tqdm import tqdm
 
-from disorder_landscape.chain import dataset_folder
-from disorder_landscape.dataset import shards
-from disorder_landscape.learning.curves import training_seconds
-from disorder_landscape.studies.plan import PlannedRun, Study
-from disorder_landscape.studies.table import Result, read_table, write_table
+from disorder_landscape.dataset.store import provenance
+from disorder_landscape.files import replacing, write_json
+from disorder_landscape.studies.plan import Study
+from disorder_landscape.studies.rows import Row, as_text, read_rows, stored_numbers, write_rows
+from disorder_landscape.studies.study import Derived, Place, Plan
+from disorder_landscape.workers import each_result
+
+WRITTEN_EVERY = 5.0
+"""Seconds after which rows are written; those of an interrupted study are, too."""
 
 
-def run_study(study: Study, table: Path, build: Path, workers: int = 2) -> list[Result]:
-    """Carry out what is missing of a study and return its whole table, in the plan's order.
+def carry_out(study: Study, place: Place, limit: int | None = None) -> Derived:
+    """Carry out what is missing of a study; return what follows, where it is complete then.
 
-    The table is written after every training, so that an interrupted study goes on where it was; a
-    training goes on after its last finished epoch. Datasets and models are shared with all other
-    studies, in build/datasets and build/models.
+    What is there is not repeated, so that an interrupted study goes on where it was. Several runs
+    may share a table.
 
     Parameters
     ----------
     study : Study
-    table : Path
-        CSV file. Rows of trainings that the plan no longer has are dropped.
-    build : Path
-    workers : int
-        Processes that generate.
+    place : Place
+    limit : int, optional
+        Only so many of the missing tasks.
 
     Raises
     ------
     ArgumentError
-        If the table or a folder cannot be read or written; what was finished stays.
+        If a table or a folder cannot be read or written; what was finished stays.
     """
-    there = {result.key: result for result in read_table(table)}
-    missing = [run for run in study.runs if run.key not in there]
-    with tqdm(missing, desc=study.name, unit=" trainings") as bar:
-        for run in bar:
-            bar.set_postfix_str(f"{run.name}, {run.config.training.realizations} realizations")
-            there[run.key] = carry_out(run, build, workers)
-            write_table(table, [there[one.key] for one in study.runs if one.key in there])
-    return [there[run.key] for run in study.runs]
+    # The first wires of all settings come first.
+    missing = sorted(study.missing(place), key=lambda task: getattr(task, "index", 0))
+    chosen = missing[:limit]
+    if chosen:
+        done = len(study.tasks) - len(missing)
+        bar = tqdm(total=len(study.tasks), initial=done, desc=study.name, unit=" tasks")
+        with bar:
+            _complete(study, place, chosen, bar)
+    if study.missing(place):
+        return Derived()
+    return _conclude(study, place, bool(chosen))
 
 
-def carry_out(run: PlannedRun, build: Path, workers: int) -> Result:
-    """Generate, train and score one training."""
-    from disorder_landscape.learning.training import train
+def _complete(study: Study, place: Place, tasks: Sequence[Any], bar: Any) -> None:
+    """Carry tasks out, and write their rows every few seconds and at the end."""
+    new: list[Row] = []
+    written = time.monotonic()
+    try:
+        for rows in _results(study.plan, place, tasks):
+            new += rows
+            bar.update()
+            if time.monotonic() - written > WRITTEN_EVERY:
+                _add(study, place, new)
+                new, written = [], time.monotonic()
+    finally:
+        if new:
+            _add(study, place, new)
 
-    config, folder = run.config, model_folder(run, build)
-    if not (folder / "metrics.json").exists():
-        dataset = dataset_folder(config.dataset, build)
-        shards.generate(config.dataset, dataset, workers)
-        train(shards.read_shards(config.dataset, dataset), config, folder, "landscape study")
-    return _result(run, folder)
 
-
-def model_folder(run: PlannedRun, build: Path) -> Path:
-    """Return the folder of a training's network."""
-    return build / "models" / run.key
-
-
-def _result(run: PlannedRun, folder: Path) -> Result:
-    from disorder_landscape.learning.examples import split
-    from disorder_landscape.learning.model import load_model, read_model_file
-
-    dataset, network, training = run.config.dataset, run.config.network, run.config.training
-    metrics = read_model_file(folder / "metrics.json")
-    used = training.realizations or split(dataset.realizations, training.test_fraction)[0].stop
-    weights = load_model(folder).network.trainable_weights
-    return Result(
-        name=run.name,
-        key=run.key,
-        dataset=dataset.hash,
-        components=dataset.components,
-        amplitude=dataset.amplitude,
-        realizations=used,
-        test_realizations=metrics["realizations"],
-        architecture=network.architecture,
-        width_fraction=network.width_fraction,
-        weights=sum(math.prod(weight.shape) for weight in weights),
-        compress_inputs=training.compress_inputs,
-        mirror=training.mirror,
-        noise=training.noise,
-        seed=training.seed,
-        R2=metrics["r2"],
-        delta_V=metrics["delta_V"],
-        delta_alpha=metrics["delta_alpha"],
-        minutes=round(training_seconds(folder / "curves.csv") / 60, 2),
+def _results(plan: Plan, place: Place, tasks: Sequence[Any]) -> Iterator[list[Row]]:
+    function = partial(_rows, plan, place)
+    return (
+        each_result(function, tasks, place.workers) if plan.in_processes else map(function, tasks)
     )
+
+
+def _rows(plan: Plan, place: Place, task: Any) -> list[Row]:
+    return [as_text(row) for row in plan.rows(task, place)]
+
+
+def _add(study: Study, place: Place, new: Iterable[Row]) -> None:
+    """Write rows into the table, and keep those that others have added in the meantime."""
+    path = study.table(place)
+    there = read_rows(path)
+    known = {study.key_of_row(row) for row in there}
+    rows = [*there, *(row for row in new if study.key_of_row(row) not in known)]
+    order = {study.key(task): i for i, task in enumerate(study.tasks)}
+    if not study.plan.keeps_others:
+        rows = [row for row in rows if study.key_of_row(row) in order]
+    rows.sort(key=lambda row: order.get(study.key_of_row(row), len(order)))
+    write_rows(path, rows, study.command)
+
+
+def _conclude(study: Study, place: Place, has_new: bool) -> Derived:
+    """Return what follows from the whole table, and write it where it is not what is there."""
+    table = study.table(place)
+    derived = study.plan.derived(read_rows(table), place)
+    stem = place.output / study.name
+    text, picture = stem.with_suffix(".txt"), stem.with_suffix(".png")
+    stored = stored_numbers(stem.with_suffix(".csv"))
+    made = stored.pop("provenance", {})
+    wanted = [path for path, there in ((text, derived.text), (picture, derived.draw)) if there]
+    if stored == derived.numbers and not has_new and all(path.exists() for path in wanted):
+        return derived
+    if table.parent != place.output:
+        made = provenance(study.command)
+    if derived.numbers:
+        write_json(stem.with_suffix(".json"), {**derived.numbers, "provenance": made})
+    if derived.text:
+        lines = [f"{name}: {value}" for name, value in made.items()]
+        _write_text(text, "\n".join([derived.text, "", *lines]) + "\n")
+    if derived.draw is not None:
+        derived.draw(picture)
+    return derived
+
+
+def _write_text(path: Path, text: str) -> None:
+    with replacing(path) as temporary:
+        temporary.write_text(text, "utf-8")

@@ -1,19 +1,22 @@
-"""How many independent combinations of the disorder the data fix, from the Jacobian.
+"""Kind "uniqueness": how many independent combinations of the disorder the data fix.
 
 At a wire of the disorder model the derivatives of all conductances with respect to the unknowns
 give the information that data with a certain noise hold. In units of the prior it has one
-eigenvalue for each independent combination. Where it is above one, the data constrain that
-combination more than the prior does. The posterior's standard deviation of V follows from the same
-matrix. An answer that is unique in this sense may still have others far away.
+eigenvalue for each independent combination; where it is above one, the data tell more of that
+combination than was known before. The posterior's standard deviation of V follows from the same
+matrix: an answer that is unique in this sense may still have others far away.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
+from pydantic import Field
 
-from disorder_landscape.config import DatasetConfig
+from disorder_landscape.config import DatasetConfig, Positive
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.measurement import empty_measurement
@@ -21,14 +24,13 @@ from disorder_landscape.inference.problem.observation import Observation, noise_
 from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.search.gauss_newton import linearise
 from disorder_landscape.model.parameters import FloatArray
+from disorder_landscape.studies.study import Part, Place, Plan
 
-NOISE = (0.001, 0.01, 0.1)
-"""In e²/h; the first is the noise floor of the experiment that the paper cites."""
 NARROW = 1e-12
 """Variance of a distribution across which the differences have their least length."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, order=True)
 class Setting:
     """How many components a wire has, and on which grid it is measured."""
 
@@ -53,7 +55,44 @@ class Setting:
         )
 
 
-def information_rows(setting: Setting) -> list[dict[str, float]]:
+class Grids(Part):
+    """So many wires of each number of components, on each of some grids."""
+
+    components: tuple[Positive, ...]
+    points: tuple[Positive, ...]
+    """Of μ, and of B."""
+    biases: tuple[Positive, ...]
+    count: Positive
+    """Of wires."""
+
+
+class UniquenessPlan(Plan):
+    """What the data fix of the disorder, over components, grids and noise."""
+
+    kind: Literal["uniqueness"]
+    noise: tuple[Annotated[float, Field(gt=0, le=1)], ...]
+    """In e²/h."""
+    grids: tuple[Grids, ...]
+
+    keys: ClassVar = ("components", "points", "biases", "index")
+
+    def tasks(self) -> Sequence[Setting]:
+        """Return the settings, by components, points, biases and index."""
+        return sorted(
+            Setting(components, points, biases, index)
+            for group in self.grids
+            for components in group.components
+            for points in group.points
+            for biases in group.biases
+            for index in range(group.count)
+        )
+
+    def rows(self, task: Setting, place: Place) -> list[dict[str, object]]:
+        """Return a row for each noise."""
+        return information_rows(task, self.noise)
+
+
+def information_rows(setting: Setting, noises: Iterable[float]) -> list[dict[str, object]]:
     """Return for each noise how many combinations the data fix, and how well V is known.
 
     Returns
@@ -68,20 +107,20 @@ def information_rows(setting: Setting) -> list[dict[str, float]]:
     slope = _slopes(unknowns, truth)
     prior = unknowns.prior.covariance
     root = np.linalg.cholesky(prior)
-    rows = []
-    for noise in NOISE:
+    rows: list[dict[str, object]] = []
+    for noise in noises:
         scaled = root.T @ slope / noise
         eigenvalues, axes = np.linalg.eigh(scaled @ scaled.T)
         turned = root @ axes
         posterior = (turned / (1 + np.maximum(eigenvalues, 0.0))) @ turned.T
         rows.append(
             {
-                **vars(setting),
+                **asdict(setting),
                 "noise": noise,
                 "unknowns": truth.size,
                 "fixed": int((eigenvalues > 1).sum()),
-                "spread": unknowns.site_std(posterior),
-                "prior_spread": unknowns.site_std(prior),
+                "spread": round(unknowns.site_std(posterior), 7),
+                "prior_spread": round(unknowns.site_std(prior), 7),
             }
         )
     return rows

@@ -1,16 +1,19 @@
-"""Inversions of wires with something that the model lacks, and what notices wrong answers.
+"""Kind "unmodelled": inversions of wires with something that the model lacks; what notices it.
 
-Each row inverts a fresh wire of `studies.inversions`, of which one thing is other than the model
+Each row inverts a fresh wire of `studies.fresh_wires`, of which one thing is other than the model
 has it, and asks two checks: the verdict, and measurements at other barriers (K'_full of S-II.1),
-which the inversion does not use. Rows of the kind "nothing" count false alarms.
+which the inversion has not seen. Rows of the kind "nothing" count false alarms.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import ClassVar, Literal
 
 import numpy as np
 
+from disorder_landscape.config import Positive
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.inference.problem.measurement import (
     Measurement,
@@ -21,10 +24,20 @@ from disorder_landscape.inference.problem.observation import Observation, noise_
 from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.verification.predictive import predictive_p
 from disorder_landscape.model.parameters import FloatArray, Nanowire
-from disorder_landscape.studies.inversions import SEED, inverted, measured, network_of, rounded
+from disorder_landscape.studies.fresh_wires import (
+    SEED,
+    Noise,
+    ShippedModel,
+    inverted,
+    measured,
+    network_of,
+)
+from disorder_landscape.studies.rows import rounded
+from disorder_landscape.studies.study import Part, Place, Plan
 
-NOTHING = "nothing"
-KINDS = {
+Kind = Literal["nothing", "gap", "temperature", "barrier", "uncorrelated", "dissipation", "bias"]
+NOTHING: Kind = "nothing"
+KINDS: dict[Kind, str] = {
     NOTHING: "the model is right",
     "gap": "Δ₀ 20 % smaller, or larger",
     "temperature": "100 mK instead of 50 mK",
@@ -38,14 +51,9 @@ HOT, DISSIPATION, OFFSET = 0.1, 1e-3, 5e-3
 """In K, meV and meV."""
 OTHER_BARRIERS = (25.0, 10.0)
 """Of the measurements that check the answer, left and right in meV."""
-EVERY = 2
-"""Of the points of μ and B, how many they are apart."""
-SAMPLES = 100
-"""Of the answer, which predict those measurements."""
-KEYS = ["model", "noise", "kind", "index"]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, order=True)
 class Task:
     """One inversion: a shipped model's name, the noise in e²/h, what is other, and which wire."""
 
@@ -53,6 +61,45 @@ class Task:
     noise: float
     kind: str
     index: int
+
+
+class Wires(Part):
+    """So many wires of each model, with each thing other than the model has it."""
+
+    models: tuple[ShippedModel, ...]
+    noise: tuple[Noise, ...]
+    """In e²/h."""
+    other: tuple[Kind, ...]
+    """Of KINDS."""
+    count: Positive
+
+
+class UnmodelledPlan(Plan):
+    """Inversions of fresh wires of which one thing is other than the model has it."""
+
+    kind: Literal["unmodelled"]
+    samples: Positive
+    """Of the answer, which predict the measurements at other barriers."""
+    every: Positive
+    """Of the points of μ and B, how many those measurements are apart."""
+    wires: tuple[Wires, ...]
+
+    keys: ClassVar = ("model", "noise", "kind", "index")
+
+    def tasks(self) -> Sequence[Task]:
+        """Return the tasks, by model, noise, kind and index."""
+        return sorted(
+            Task(model, noise, kind, index)
+            for group in self.wires
+            for model in group.models
+            for noise in group.noise
+            for kind in group.other
+            for index in range(group.count)
+        )
+
+    def rows(self, task: Task, place: Place) -> list[dict[str, object]]:
+        """Invert the measurement of a wire that is not as the model has it."""
+        return [unmodelled_row(task, self.samples, self.every)]
 
 
 def changed(
@@ -86,8 +133,14 @@ def true_conductances(task: Task, wire: Nanowire, settings: Measurement) -> Floa
     return simulated(*changed(task.kind, task.index, wire, settings))
 
 
-def unmodelled_row(task: Task) -> dict[str, object]:
+def unmodelled_row(task: Task, samples: int, every: int) -> dict[str, object]:
     """Invert the measurement, check the answer, and compare it with the truth.
+
+    Parameters
+    ----------
+    task : Task
+    samples, every : int
+        As in `UnmodelledPlan`.
 
     Returns
     -------
@@ -107,7 +160,7 @@ def unmodelled_row(task: Task) -> dict[str, object]:
     true, _ = changed(task.kind, task.index, one.wire, settings)
     change = G - simulated(one.wire, settings)
     other_settings = replace(
-        settings, mu=config.mu[::EVERY], B=config.B[::EVERY], barrier=OTHER_BARRIERS
+        settings, mu=config.mu[::every], B=config.B[::every], barrier=OTHER_BARRIERS
     )
     other_wire = replace(one.wire, barrier=OTHER_BARRIERS)
     other_G = true_conductances(task, other_wire, other_settings)
@@ -115,7 +168,7 @@ def unmodelled_row(task: Task) -> dict[str, object]:
         measured(other_settings, other_G, task.noise, task.index, 3), unknowns, noise
     )
     rng = np.random.default_rng([SEED, task.index, 4])
-    predicted = further.simulate(found.chosen.draw(rng, SAMPLES))
+    predicted = further.simulate(found.chosen.draw(rng, samples))
     return rounded(
         {
             "model": task.model,

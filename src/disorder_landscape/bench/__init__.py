@@ -1,0 +1,1 @@
+"""The benchmark: how fast the solvers are and how much memory they need."""

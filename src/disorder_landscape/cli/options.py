@@ -1,0 +1,32 @@
+"""What several commands share: options, provenance, and how to go on after Ctrl-C."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+ConfigFile = Annotated[Path, typer.Option("--config", "-c", help="TOML file of the run.")]
+Build = Annotated[Path, typer.Option(help="Folder of the results, one subfolder per run.")]
+Workers = Annotated[int, typer.Option(min=1, max=1024, help="Processes, one thread each.")]
+
+
+@contextmanager
+def resumable() -> Iterator[None]:
+    """Tell whoever presses Ctrl-C how to go on."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        print("\nlandscape: interrupted; the same command goes on from here", file=sys.stderr)
+        raise typer.Exit(130) from None
+
+
+def made_here() -> dict[str, str]:
+    """Return the provenance of what this command line makes."""
+    from disorder_landscape.dataset.store import provenance
+
+    return provenance(" ".join(["landscape", *sys.argv[1:]]))

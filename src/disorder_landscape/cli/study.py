@@ -1,0 +1,62 @@
+"""`landscape study`: many trainings, inversions or checks that differ in a few settings."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from disorder_landscape.arguments import ArgumentError
+from disorder_landscape.cli.options import Build, Workers, resumable
+from disorder_landscape.parts import needs
+
+
+@needs("learning")
+def study(
+    plan: Annotated[
+        str | None, typer.Argument(help="Name of a plan in configs/studies, or a TOML file.")
+    ] = None,
+    listed: Annotated[
+        bool, typer.Option("--list", help="Print the studies, and how far each has come.")
+    ] = False,
+    output: Annotated[Path, typer.Option("--output", "-o", help="Folder of the tables.")] = Path(
+        "results"
+    ),
+    build: Build = Path("build"),
+    workers: Workers = 2,
+    limit: Annotated[
+        int | None, typer.Option(min=0, help="So many of the missing tasks only.")
+    ] = None,
+) -> None:
+    """Carry out what the table of a study lacks; an interrupted study goes on.
+
+    The table is results/<name of the study>.csv; what follows from it is beside it. The exit status
+    is 1 where the study checks bounds and one fails.
+
+    Example: landscape study learning_curves
+    """
+    from disorder_landscape.studies.plan import load_study, study_names
+    from disorder_landscape.studies.runner import carry_out
+    from disorder_landscape.studies.study import Place
+
+    place = Place(output, build, workers)
+    if listed:
+        for name in study_names():
+            one = load_study(name)
+            done = len(one.tasks) - len(one.missing(place))
+            print(f"{name:16}  {done:5} of {len(one.tasks):5}  {one.plan.title}")
+        return
+    if plan is None:
+        raise ArgumentError("plan", "be the name of a study", "none is given; --list prints all")
+    chosen = load_study(plan)
+    before = len(chosen.missing(place))
+    with resumable():
+        derived = carry_out(chosen, place, limit)
+    left = len(chosen.missing(place))
+    for line in derived.lines:
+        print(line)
+    said = f"{before - left} added, {left} missing" if before else "nothing was missing"
+    print(f"{chosen.table(place)}: {len(chosen.tasks) - left} tasks, {said}")
+    if not derived.passed:
+        raise typer.Exit(1)

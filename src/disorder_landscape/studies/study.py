@@ -1,0 +1,75 @@
+"""What a kind of study must offer: its tasks, the rows of each, and what follows from the table."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, ClassVar
+
+from pydantic import BaseModel, ConfigDict
+
+from disorder_landscape.studies.rows import Row
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where studies are carried out, and with how many processes."""
+
+    output: Path
+    """Folder of the tables, and of what follows from them."""
+    build: Path
+    """Folder of datasets, models, and of tables that only these very solvers make."""
+    workers: int
+
+
+@dataclass(frozen=True)
+class Derived:
+    """What follows from a table that is complete."""
+
+    numbers: Mapping[str, Any] = field(default_factory=dict)
+    """For <name>.json."""
+    text: str = ""
+    """For <name>.txt."""
+    draw: Callable[[Path], None] | None = None
+    """Writes <name>.png."""
+    lines: Sequence[str] = ()
+    """To be printed."""
+    passed: bool = True
+    """Whether the bounds hold that the study checks, if it does."""
+
+
+class Part(BaseModel):
+    """A table of a plan, with nothing in it that is not known."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Plan(Part):
+    """A study as its TOML file states it; each kind has a subclass, and a module of its own."""
+
+    title: str
+
+    keys: ClassVar[tuple[str, ...]]
+    """Columns that tell the rows of a task from others'; attributes of a task, of the same name."""
+    in_processes: ClassVar[bool] = True
+    """Whether the tasks share out `Place.workers`; otherwise each task uses all of them."""
+    keeps_others: ClassVar[bool] = True
+    """Whether a row stays in the table whose task the plan no longer has."""
+
+    @abstractmethod
+    def tasks(self) -> Sequence[Any]:
+        """Return the tasks, in the order of the table."""
+
+    @abstractmethod
+    def rows(self, task: Any, place: Place) -> Iterable[Mapping[str, object]]:
+        """Carry a task out; return its rows, each with the keys."""
+
+    def folder(self, place: Place) -> Path:
+        """Return where the table is kept."""
+        return place.output
+
+    def derived(self, rows: Sequence[Row], place: Place) -> Derived:
+        """Return what follows from the whole table."""
+        return Derived()

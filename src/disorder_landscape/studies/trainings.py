@@ -1,0 +1,168 @@
+"""Kind "trainings": networks that are trained and scored, and differ in a few settings."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from copy import deepcopy
+from dataclasses import asdict, dataclass
+from itertools import product
+from pathlib import Path
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field, model_validator
+
+from disorder_landscape.chain import dataset_folder
+from disorder_landscape.config import Config, checked
+from disorder_landscape.dataset import shards
+from disorder_landscape.studies.study import Part, Place, Plan
+from disorder_landscape.studies.trainings_table import Result
+
+
+class Runs(Part):
+    """Trainings that have a name and some settings in common."""
+
+    name: str
+    set: dict[str, dict[str, Any]] = Field(default_factory=dict)
+    """Sections and keys of a configuration, instead of the base's."""
+    together: dict[str, list[Any]] = Field(default_factory=dict)
+    """Lists of values for "section.key", as long as each other, which go through together."""
+    grid: dict[str, list[Any]] = Field(default_factory=dict)
+    """Lists of values for "section.key"; every combination, also with `together`, is a training."""
+
+    @model_validator(mode="after")
+    def _as_long_as_each_other(self) -> Runs:
+        if len({len(values) for values in self.together.values()}) > 1:
+            raise ValueError("together must have lists that are as long as each other")
+        return self
+
+
+@dataclass(frozen=True)
+class PlannedRun:
+    """One training of a study.
+
+    Parameters
+    ----------
+    name : str
+        Of the group of runs it belongs to.
+    config : Config
+    """
+
+    name: str
+    config: Config
+
+    @property
+    def key(self) -> str:
+        """What tells it from every other training, in any study: 12 hexadecimal digits."""
+        config = self.config
+        parts = [
+            config.dataset.hash,
+            str(config.dataset.realizations),
+            config.network.model_dump_json(exclude_defaults=True),
+            config.training.model_dump_json(exclude_defaults=True),
+        ]
+        return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:12]
+
+
+class TrainedPlan(Plan):
+    """A study of networks that it trains, or finds trained."""
+
+    base: dict[str, dict[str, Any]]
+    """A configuration, from which each training differs."""
+    runs: tuple[Runs, ...]
+
+    in_processes: ClassVar = False
+
+    def trainings(self) -> list[PlannedRun]:
+        """Return the trainings, in the order of the file.
+
+        Raises
+        ------
+        ArgumentError
+            If one of them has an unknown or invalid key.
+        """
+        return [run for group in self.runs for run in _expand(group, self.base, self.title)]
+
+
+class TrainingsPlan(TrainedPlan):
+    """Trainings that are compared; a row each.
+
+    Datasets and models are shared with all other studies, in build/datasets and build/models. An
+    interrupted training goes on after its last finished epoch.
+    """
+
+    kind: Literal["trainings"]
+
+    keys: ClassVar = ("key",)
+    keeps_others: ClassVar = False
+
+    def tasks(self) -> Sequence[PlannedRun]:
+        """Return the trainings."""
+        return self.trainings()
+
+    def rows(self, task: PlannedRun, place: Place) -> list[dict[str, object]]:
+        """Generate, train and score one training."""
+        return [asdict(trained(task, place))]
+
+
+def trained(run: PlannedRun, place: Place) -> Result:
+    """Return what a training has come to, after what is missing of it."""
+    from disorder_landscape.learning.training import train
+
+    config, folder = run.config, model_folder(run, place.build)
+    if not (folder / "metrics.json").exists():
+        dataset = dataset_folder(config.dataset, place.build)
+        shards.generate(config.dataset, dataset, place.workers)
+        train(shards.read_shards(config.dataset, dataset), config, folder, "landscape study")
+    return _result(run, folder)
+
+
+def model_folder(run: PlannedRun, build: Path) -> Path:
+    """Return the folder of a training's network."""
+    return build / "models" / run.key
+
+
+def _result(run: PlannedRun, folder: Path) -> Result:
+    from disorder_landscape.learning.curves import training_seconds
+    from disorder_landscape.learning.examples import split
+    from disorder_landscape.learning.model import load_model, read_model_file
+
+    dataset, network, training = run.config.dataset, run.config.network, run.config.training
+    metrics = read_model_file(folder / "metrics.json")
+    used = training.realizations or split(dataset.realizations, training.test_fraction)[0].stop
+    weights = load_model(folder).network.trainable_weights
+    return Result(
+        name=run.name,
+        key=run.key,
+        dataset=dataset.hash,
+        components=dataset.components,
+        amplitude=dataset.amplitude,
+        realizations=used,
+        test_realizations=metrics["realizations"],
+        architecture=network.architecture,
+        width_fraction=network.width_fraction,
+        weights=sum(math.prod(weight.shape) for weight in weights),
+        compress_inputs=training.compress_inputs,
+        mirror=training.mirror,
+        noise=training.noise,
+        seed=training.seed,
+        R2=metrics["r2"],
+        delta_V=metrics["delta_V"],
+        delta_alpha=metrics["delta_alpha"],
+        minutes=round(training_seconds(folder / "curves.csv") / 60, 2),
+    )
+
+
+def _expand(group: Runs, base: Mapping[str, Any], title: str) -> Iterator[PlannedRun]:
+    """Yield a training for every combination of the group's grid and what goes together."""
+    names = [*group.together, *group.grid]
+    together = list(zip(*group.together.values(), strict=True)) or [()]
+    for first, *others in product(together, *group.grid.values()):
+        content = deepcopy(dict(base))
+        for section, settings in group.set.items():
+            content.setdefault(section, {}).update(settings)
+        for name, value in zip(names, (*first, *others), strict=True):
+            section, _, key = name.partition(".")
+            content.setdefault(section, {})[key] = value
+        yield PlannedRun(group.name, checked(Config, title, "study", content))
