@@ -107,9 +107,10 @@ sanitize: $(READY) ## run all fast tests of the core with bad accesses and overf
 wasm: $(READY) ## compile the core to WebAssembly, for a page without a server: build/wasm/nanowire.wasm
 	@sh scripts/wasm.sh build/wasm/nanowire.wasm
 
-lint: $(READY) ## check style, types, and that layers look down only
+lint: $(READY) ## check style, spelling, types, and that layers look down only
 	.venv/bin/ruff check .
 	.venv/bin/ruff format --check .
+	.venv/bin/codespell
 	.venv/bin/mypy
 	.venv/bin/lint-imports --no-logo --no-cache
 

@@ -13,7 +13,7 @@ from disorder_landscape import Nanowire, conductance, topological_visibility
 from disorder_landscape.dataset.store import provenance, write_dataset
 from disorder_landscape.model.disorder import disorder_realization
 from disorder_landscape.model.parameters import SITES
-from disorder_landscape.model.quantities import labelled
+from disorder_landscape.model.quantities import with_units
 
 SEED = 2024
 GRID = {"mu": [0.0, 0.15, 0.45], "B": [0.0, 0.25, 0.5, 0.8], "bias": [-0.04, -0.01, 0.0, 0.025]}
@@ -38,7 +38,7 @@ def main() -> None:
         part["potential"] = ("site", wire.potential)
         part["alpha"] = wire.alpha
         parts.append(part)
-    reference = labelled(xr.concat(parts, "realization"))
+    reference = with_units(xr.concat(parts, "realization"))
     attrs = {**provenance("python data_small/make_kwant_reference.py"), "seed": SEED}
     write_dataset(reference, Path(__file__).parent / "kwant_reference.nc", attrs)
 

@@ -12,7 +12,7 @@ from disorder_landscape.chain import FIVE, shipped_model
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.dataset.store import provenance, write_dataset
 from disorder_landscape.learning.model import load_model_config
-from disorder_landscape.model.quantities import CONDUCTANCES, LABELS
+from disorder_landscape.model.quantities import CONDUCTANCES, QUANTITIES
 
 SEED, INDEX = 2026, 1
 """Of the wire, which is none of any dataset."""
@@ -31,7 +31,7 @@ def main() -> None:
         G = measured[name] + NOISE * rng.normal(size=measured[name].shape)
         measured[name] = G.astype(np.float32).assign_attrs(measured[name].attrs)
     for name, dims, value in (("potential", "site", true.potential), ("alpha", (), true.alpha)):
-        long_name, units = LABELS[name]
+        long_name, units = QUANTITIES[name]
         attrs = {"long_name": f"{long_name}, which no experiment would know", "units": units}
         measured[f"true_{name}"] = (dims, value, attrs)
     attrs = {**provenance("python data_small/make_measurement.py"), "seed": SEED, "noise": NOISE}

@@ -57,7 +57,7 @@ true = measured["true_potential"]
 for name, V in (("network", guess["potential"]), ("inversion", inferred["potential_mean"])):
     error = 1e3 * np.sqrt(((V - true) ** 2).mean())
     print(f"{name}: V off by {float(error):.2f} µeV, root mean square over the sites")
-own = 1e3 * np.sqrt((inferred["potential_deviation"] ** 2).mean())
+own = 1e3 * np.sqrt((inferred["potential_std"] ** 2).mean())
 print(f"error bar of the inversion: {float(own):.2f} µeV")
 
 # %%
@@ -69,16 +69,16 @@ top.set_ylabel("V [meV]")
 top.legend(frameon=False)
 bottom.plot(1e3 * (inferred["potential"] - true).T, "C0", lw=0.3, alpha=0.5)
 bottom.axhline(0, color="k", lw=0.5)
-bottom.set(xlabel="site", ylabel="members − true [µeV]")
+bottom.set(xlabel="site", ylabel="samples − true [µeV]")
 
 # %% [markdown]
 # ## Where is it topological?
 #
-# The share of the members whose T_IV = det r is negative, at each μ and B.
+# The share of the samples whose T_IV = det r is negative, at each μ and B.
 
 # %%
 P = inferred["P_topological"]
 figure, panel = plt.subplots(figsize=(4, 3), layout="constrained")
 P.plot.pcolormesh(x="map_B", y="map_mu", ax=panel, vmin=0, vmax=1, cmap="Purples")
 certain = float(((P == 0) | (P == 1)).mean())
-print(f"all members agree at {100 * certain:.0f} % of the points")
+print(f"all samples agree at {100 * certain:.0f} % of the points")

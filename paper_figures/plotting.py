@@ -79,7 +79,7 @@ def draw_trainings(axes: Axes, data: xr.Dataset, over: str, label: Callable[...,
     over : str
         The variable on the horizontal axis.
     label : callable
-        Told a component count and its trainings, returns what the legend says.
+        Called with a component count and its trainings, returns the text of the legend.
     """
     numbers = np.unique(data["components"])
     colours = mpl.colormaps["viridis"](np.linspace(0.0, 0.9, len(numbers)))

@@ -5,7 +5,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from disorder_landscape.config import DatasetConfig
-from disorder_landscape.inference.unknowns import Gaussian, Unknowns
+from disorder_landscape.inference.problem.gaussian import Gaussian
+from disorder_landscape.inference.problem.unknowns import Unknowns
 
 CONFIG = DatasetConfig(realizations=1, components=3, sites=50)
 UNKNOWNS = Unknowns(CONFIG)
@@ -19,7 +20,7 @@ class Measured:
 
 @dataclass
 class Linear:
-    """What an `Observation` is to rounds, polish and populations."""
+    """What the search and importance sampling need of an `Observation`."""
 
     data: np.ndarray
     slope: np.ndarray

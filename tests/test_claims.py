@@ -533,6 +533,18 @@ def test_numbers_are_printed_short(value, printed):
     assert table.number(value) == printed
 
 
+def test_each_claim_of_the_short_table_is_a_link_to_its_section():
+    found = stored_findings(ALL)
+    for one, cells in zip(found, table.summary(found), strict=True):
+        link = re.fullmatch(r"\[(.*)\]\(#(.*)\)", cells[0])
+        text = table.section(one)
+        assert text.startswith(f"## {link[1]}\n")
+        assert link[2] == re.sub(r"[^\w-]", "", link[1])  # as MyST and web hosts name a heading
+        assert cells[1] in text
+        assert cells[2] in text
+        assert one.claim.statement in text
+
+
 def test_markdown_escapes_what_would_end_a_cell():
     assert table.markdown(("a", "b"), [("x|y", "")]) == "| a | b |\n|---|---|\n| x\\|y |  |\n"
 
@@ -558,7 +570,7 @@ def test_the_transition_of_a_long_pristine_wire_is_where_theory_says():
 def test_the_mean_is_told_by_no_component(monkeypatch):
     monkeypatch.setattr(measurements_of_wires, "DRAWS", 1000)
     measurements_of_wires._realizations.cache_clear()
-    assert abs(measurements_of_wires.mean_told_by_components(5)) < 0.05
+    assert abs(measurements_of_wires.r2_of_mean_from_components(5)) < 0.05
     assert measurements_of_wires.mean_spread(5) == pytest.approx(0.01, rel=0.1)
     measurements_of_wires._realizations.cache_clear()
 

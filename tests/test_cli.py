@@ -173,20 +173,20 @@ def test_verify_reads_what_simulate_writes(verification, tmp_path):
     assert verified.attrs["command"].startswith("landscape verify prediction.nc")
 
 
-def test_verify_writes_what_few_members_of_an_inversion_come_to(verification):
+def test_verify_writes_what_few_samples_of_an_inversion_come_to(verification):
     one = xr.load_dataset("prediction.nc", engine="h5netcdf")
     found = one.assign(
-        potential=one["potential"].expand_dims(member=3),
+        potential=one["potential"].expand_dims(sample=3),
         potential_mean=one["potential"],
-        alpha=one["alpha"].expand_dims(member=3),
+        alpha=one["alpha"].expand_dims(sample=3),
         alpha_mean=one["alpha"],
     )
     found.to_netcdf("inferred.nc", engine="h5netcdf")
     code, out, err = verification("inferred.nc", "other.nc", "--controls", 19, "-o", "verified.nc")
     assert code == 0, err
-    assert "Fewer than 49 members" in out
+    assert "Fewer than 49 samples" in out
     verified = xr.load_dataset("verified.nc", engine="h5netcdf")
-    assert np.isnan(verified["p_members"])
+    assert np.isnan(verified["p_samples"])
     assert verified["mismatch"].max() < 1e-9
 
 

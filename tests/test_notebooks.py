@@ -25,7 +25,7 @@ def test_notebook(path: Path, monkeypatch, capsys):
     plt.close("all")
     said = capsys.readouterr().out
     assert "\nconverged after" in f"\n{said}"
-    assert "all members agree at" in said
+    assert "all samples agree at" in said
     off = {
         line.split(":")[0]: float(line.split()[4]) for line in said.splitlines() if "off by" in line
     }

@@ -15,7 +15,7 @@ from disorder_landscape.parts import MissingPartError, needs
 
 if TYPE_CHECKING:
     from disorder_landscape.inference.infer import infer
-    from disorder_landscape.inference.verification import verify
+    from disorder_landscape.inference.verify import verify
     from disorder_landscape.learning.prediction import predict
 
 __all__ = [
@@ -43,6 +43,6 @@ def __getattr__(name: str) -> Any:
         return predict
     if name == "verify":
         with needs("inference"):
-            from disorder_landscape.inference.verification import verify
+            from disorder_landscape.inference.verify import verify
         return verify
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -20,7 +20,7 @@ from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.config import Config, DatasetConfig, load_config
 from disorder_landscape.dataset import shards
 from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
-from disorder_landscape.model.quantities import labelled
+from disorder_landscape.model.quantities import with_units
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 SHIPPED = "shipped"
@@ -179,7 +179,7 @@ def evaluate(run: Run) -> xr.Dataset:
         [test[list(names)], predicted[list(names)].rename({n: f"{n}_predicted" for n in names})],
         combine_attrs="drop",
     )
-    evaluation = labelled(evaluation)
+    evaluation = with_units(evaluation)
     attrs = {
         **provenance(f"landscape evaluate ({run.name})"),
         "fingerprint": _fingerprint(run),

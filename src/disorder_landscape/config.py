@@ -154,8 +154,8 @@ class TrainingConfig(_Section):
     noise: Annotated[float, Field(ge=0, le=10)] = 0.0
     """Standard deviation in e²/h of Gaussian errors, drawn anew at every step."""
     noise_up_to: Annotated[float, Field(gt=0, le=10)] | None = None
-    """With it, each example has a deviation of its own, log-uniform from `noise` to this: one
-    network for measurements of all these accuracies."""
+    """With it, each example has a standard deviation of its own, log-uniform from `noise` to this:
+    one network for measurements of all these accuracies."""
     networks: Positive = 1
     """How many are trained, with consecutive seeds; the prediction is their mean."""
     seed: Annotated[int, Field(ge=0)] = 0
@@ -168,7 +168,7 @@ class TrainingConfig(_Section):
 
     @property
     def largest_noise(self) -> float:
-        """Largest deviation in e²/h of an example's errors."""
+        """Largest standard deviation in e²/h of an example's errors."""
         return self.noise if self.noise_up_to is None else self.noise_up_to
 
     @property
@@ -243,11 +243,12 @@ def checked(
         # The tag of a union is no key.
         place = first["loc"][1:] if issubclass(model, RootModel) else first["loc"]
         key = ".".join(str(part) for part in place) or "the file"
-        said = {
+        messages = {
             "extra_forbidden": "it has the unknown key {key}",
             "missing": "it lacks the key {key}",
-        }.get(first["type"], "{key} is wrong: {message}")
-        but = said.format(key=key, message=first["msg"].removeprefix("Value error, "))
+        }
+        message = messages.get(first["type"], "{key} is wrong: {message}")
+        but = message.format(key=key, message=first["msg"].removeprefix("Value error, "))
         raise ArgumentError(name, f"describe a run ('{path}')", but) from None
 
 

@@ -12,7 +12,7 @@ from disorder_landscape.arguments import ArgumentError, numbers_of, require
 from disorder_landscape.dataset.store import read_dataset
 from disorder_landscape.files import replacing
 from disorder_landscape.model.parameters import FloatArray, Nanowire, checked_potential
-from disorder_landscape.model.quantities import CONDUCTANCES, labelled
+from disorder_landscape.model.quantities import CONDUCTANCES, with_units
 from disorder_landscape.observables.conductance import Progress, conductance
 from disorder_landscape.observables.visibility import topological_visibility
 from disorder_landscape.parts import needs
@@ -126,7 +126,7 @@ def simulate_wire(
     result["potential"] = ("site", wire.potential)
     for name in ("alpha", "mass", "lattice", "g", "gamma", "delta0", "barrier", "lead_mu"):
         result.attrs[name] = getattr(wire, name)
-    return labelled(result)
+    return with_units(result)
 
 
 @needs("figures")

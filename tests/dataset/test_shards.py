@@ -44,9 +44,9 @@ def test_any_order_gives_the_same_bytes(made, tmp_path):
 def test_only_what_is_missing_is_made(made, tmp_path):
     shards.make_shard(CONFIG, tmp_path, 1)
     before = shards.shard_path(tmp_path, 1).stat().st_mtime_ns
-    told = []
-    shards.generate(CONFIG, tmp_path, progress=told.append)
-    assert sum(told) == 8
+    calls = []
+    shards.generate(CONFIG, tmp_path, progress=calls.append)
+    assert sum(calls) == 8
     assert shards.shard_path(tmp_path, 1).stat().st_mtime_ns == before
     assert digests(tmp_path) == digests(made)
 

@@ -19,9 +19,9 @@ from disorder_landscape.claims.study_tables import (
     unmodelled_table,
 )
 from disorder_landscape.config import DatasetConfig
-from disorder_landscape.inference.inversion import word_heard
-from disorder_landscape.inference.measurement import empty_measurement
-from disorder_landscape.inference.unknowns import Gaussian
+from disorder_landscape.inference.invert import usable_network_features
+from disorder_landscape.inference.problem.gaussian import Gaussian
+from disorder_landscape.inference.problem.measurement import empty_measurement
 from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED
 from disorder_landscape.model.parameters import Nanowire
 from disorder_landscape.studies import inversions, runner
@@ -58,10 +58,10 @@ def row(index, model=FIVE, noise=0.01, **changes):
         "network_alpha_error": 0.02,
         "alpha_error": 0.001,
         "mahalanobis": (z**2).sum(),
-        "worth": np.nan,
+        "effective_sample_size": np.nan,
         "verdict": CONVERGED,
         "seconds": 10.0,
-        "deviations": " ".join(f"{one:.3f}" for one in z),
+        "z_scores": " ".join(f"{one:.3f}" for one in z),
     } | changes
 
 
@@ -182,15 +182,15 @@ def test_the_table_of_more_components_has_a_row_for_each_noise(tmp_path):
 def test_the_network_of_thirty_components_knows_something_of_fresh_wires():
     """It is asked on its own points of the grid, of wires and errors that it has not seen."""
     observation, _ = measured_wire(load_study("components").plan.grid(30), noise=0.001, index=0)
-    word = word_heard(model_of(shipped_model(THIRTY)), observation)
-    assert word is not None
-    assert word.seen.data.size == observation.data.size / 4
+    features = usable_network_features(model_of(shipped_model(THIRTY)), observation)
+    assert features is not None
+    assert features.on_grid.data.size == observation.data.size / 4
     prior, rng = observation.unknowns.prior, np.random.default_rng(0)
     truth = prior.draw(rng, 40)
-    labels = word.on_members(word.seen.simulate(truth), rng)
+    labels = features.features_of_samples(features.on_grid.simulate(truth), rng)
     squares = ((labels - truth) ** 2).mean(axis=0) / np.diag(prior.covariance)
     assert squares[:-1].mean() < 0.7  # the mean of V it does not know
-    assert word.on_data.shape == (31,)
+    assert features.features_of_data.shape == (31,)
 
 
 def test_the_table_of_what_the_model_lacks_counts_both_checks(tmp_path):
@@ -251,7 +251,9 @@ def test_joint_coverage_sees_one_axis_that_is_wrong(too_small, lost):
     z[:, 6] *= too_small
     texts = [" ".join(f"{one:.3f}" for one in wire) for wire in z]
     squares = (z**2).sum(axis=1)
-    table = pd.DataFrame({"deviations": texts, "mahalanobis": squares, "worth": np.nan})
+    table = pd.DataFrame(
+        {"z_scores": texts, "mahalanobis": squares, "effective_sample_size": np.nan}
+    )
     nominal = np.array([0.5, 0.8, 0.95])
     assert np.all(abs(coverage(table) - nominal) < 0.06)
     missing = nominal - joint_coverage(table)
@@ -260,16 +262,18 @@ def test_joint_coverage_sees_one_axis_that_is_wrong(too_small, lost):
 
 def test_joint_coverage_knows_that_populations_have_few_members():
     """Their covariance is too narrow along one axis or another, and their mean is off."""
-    rng, worth, rows = np.random.default_rng(6), 40, []
+    rng, size, rows = np.random.default_rng(6), 40, []
     for truth in rng.normal(size=(1000, 7)):
-        members = rng.normal(size=(worth, 7))
-        drawn = Gaussian(members.mean(axis=0), np.cov(members.T))
+        samples = rng.normal(size=(size, 7))
+        drawn = Gaussian(samples.mean(axis=0), np.cov(samples.T))
         square = float(drawn.squared_distance(truth))
-        rows.append({"mahalanobis": square, "deviations": "0 0 0 0 0 0 0"})
+        rows.append({"mahalanobis": square, "z_scores": "0 0 0 0 0 0 0"})
     table = pd.DataFrame(rows)
     nominal = np.array([0.5, 0.8, 0.95])
-    np.testing.assert_allclose(joint_coverage(table.assign(worth=worth)), nominal, atol=0.04)
-    assert np.all(joint_coverage(table.assign(worth=np.nan)) < nominal - 0.06)
+    np.testing.assert_allclose(
+        joint_coverage(table.assign(effective_sample_size=size)), nominal, atol=0.04
+    )
+    assert np.all(joint_coverage(table.assign(effective_sample_size=np.nan)) < nominal - 0.06)
 
 
 @pytest.fixture(scope="module")

@@ -42,10 +42,10 @@ MEMORY = tuple(DatasetConfig(realizations=n, sites=100) for n in (50, 200))
 """Datasets that are generated to see the memory it takes."""
 
 Progress = Callable[[int], object]
-"""Told 1 after each turn; the first, which warms up and is not counted, is one more."""
+"""Called with 1 after each turn; the first, which warms up and is not counted, is one more."""
 
 
-def measure(repeats: int, told: Progress = lambda done: None) -> dict[str, Any]:
+def measure(repeats: int, progress: Progress = lambda done: None) -> dict[str, Any]:
     """Measure everything, each time so often; return what `bench.json` holds.
 
     What is compared is measured in turn, so that a change of the core's clock meets all alike, and
@@ -85,7 +85,7 @@ def measure(repeats: int, told: Progress = lambda done: None) -> dict[str, Any]:
         needed = {
             n: thermal_average(some, *few, BIASES, TEMPERATURE)[2] for n, some in long.items()
         }
-        seconds = _in_turn(watches, repeats, told)
+        seconds = _in_turn(watches, repeats, progress)
     omega, _ = thermal_grid(BIASES, TEMPERATURE, five[0].delta0, PAPER_SPACING)
     times = {name: float(np.median(of)) for name, of in seconds.items()}
     kwant_set = PAPER_ENERGIES * np.array(seconds["Kwant, per energy"])
@@ -130,7 +130,7 @@ def measure(repeats: int, told: Progress = lambda done: None) -> dict[str, Any]:
 
 
 def _in_turn(
-    watches: Mapping[str, Stopwatch], repeats: int, told: Progress
+    watches: Mapping[str, Stopwatch], repeats: int, progress: Progress
 ) -> dict[str, list[float]]:
     seconds: dict[str, list[float]] = {name: [] for name in watches}
     for turn in range(repeats + 1):
@@ -138,7 +138,7 @@ def _in_turn(
             taken = watch()
             if turn > 0:  # the first warms up
                 seconds[name].append(taken)
-        told(1)
+        progress(1)
     return seconds
 
 

@@ -13,7 +13,7 @@ from disorder_landscape.files import check_writable, replacing, write_json
 from disorder_landscape.model.parameters import SITES, TEMPERATURE
 
 
-def report(repeats: int, folder: Path, told: Progress = lambda done: None) -> list[str]:
+def report(repeats: int, folder: Path, progress: Progress = lambda done: None) -> list[str]:
     """Measure everything, write bench.json, bench.txt and bench.png; return the lines of the table.
 
     Parameters
@@ -22,7 +22,8 @@ def report(repeats: int, folder: Path, told: Progress = lambda done: None) -> li
         Turns, of which the medians are taken.
     folder : Path
         Where the files go.
-    told : callable
+    progress : callable
+        Called after each turn.
 
     Raises
     ------
@@ -30,7 +31,7 @@ def report(repeats: int, folder: Path, told: Progress = lambda done: None) -> li
         If the folder cannot be written, before anything is measured.
     """
     check_writable("output", folder / "bench.txt")
-    found = measure(repeats, told)
+    found = measure(repeats, progress)
     lines = list(table(found))
     write_json(folder / "bench.json", found)
     with replacing(folder / "bench.txt") as temporary:

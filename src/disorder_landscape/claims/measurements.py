@@ -35,7 +35,7 @@ MEASUREMENTS: dict[str, Callable[..., float]] = {
         measurements_of_wires.components_required,
         measurements_of_wires.transition,
         measurements_of_wires.mean_spread,
-        measurements_of_wires.mean_told_by_components,
+        measurements_of_wires.r2_of_mean_from_components,
         measurements_of_wires.potential_spread_from_scores,
         core_hours_of_dataset,
         core_hours_of_components,

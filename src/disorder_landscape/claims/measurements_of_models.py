@@ -128,13 +128,13 @@ def _test_wires(model: str) -> list[Nanowire]:
 def _predicted_wires(model: str, mean: str) -> list[Nanowire]:
     """Return the wires that the network says the test wires are."""
     test, network = _loaded(model)
-    said = predict(network, test)
-    V = said["potential"].to_numpy()
+    predicted = predict(network, test)
+    V = predicted["potential"].to_numpy()
     true_mean = test["potential"].mean("site").to_numpy()
     means = {"predicted": V.mean(axis=1), "known": true_mean}
     require(mean in means, "mean", f"be one of {', '.join(means)}", f"it is '{mean}'")
     V += (means[mean] - V.mean(axis=1))[:, None]
-    pairs = zip(V, said["alpha"].to_numpy(), strict=True)
+    pairs = zip(V, predicted["alpha"].to_numpy(), strict=True)
     return [Nanowire(potential, alpha=float(alpha)) for potential, alpha in pairs]
 
 

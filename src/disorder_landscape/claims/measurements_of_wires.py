@@ -38,7 +38,7 @@ def mean_spread(components: float) -> float:
     return float(np.std(_realizations(int(components))[1]))
 
 
-def mean_told_by_components(components: float) -> float:
+def r2_of_mean_from_components(components: float) -> float:
     """Return R² of the best linear guess of the mean potential from c₁ … c_n."""
     c, mean = _realizations(int(components))[:2]
     half = DRAWS // 2

@@ -17,7 +17,7 @@ from disorder_landscape.claims.study_tables import (
     uniqueness_table,
     unmodelled_table,
 )
-from disorder_landscape.claims.table import COLUMNS, markdown, rows, tally
+from disorder_landscape.claims.table import SUMMARY_COLUMNS, markdown, section, summary, tally
 from disorder_landscape.files import replacing
 
 
@@ -61,9 +61,10 @@ def claims_tally() -> str:
 
 
 def claims_table() -> str:
-    """Return the tally and the table of all claims."""
-    table = rows(stored_findings(load_claims()))
-    return f"{claims_tally()}\n{markdown(COLUMNS, table)}"
+    """Return the tally, a short table of all claims, and a section of each."""
+    findings = stored_findings(load_claims())
+    sections = "\n".join(section(one) for one in findings)
+    return f"{claims_tally()}\n{markdown(SUMMARY_COLUMNS, summary(findings))}\n{sections}"
 
 
 PAGES: dict[str, dict[str, Callable[[], str]]] = {

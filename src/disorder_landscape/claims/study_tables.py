@@ -8,8 +8,8 @@ import pandas as pd
 
 from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.table import markdown
-from disorder_landscape.inference.comparison import UNLIKELY
 from disorder_landscape.inference.verdict import CONVERGED
+from disorder_landscape.inference.verification.comparison import UNLIKELY
 from disorder_landscape.studies.calibration import coverage, joint_coverage
 from disorder_landscape.studies.fresh_wires import wrong
 from disorder_landscape.studies.unmodelled import KINDS

@@ -66,10 +66,10 @@ def _value(outcome: Outcome, unit: str) -> str:
 def verdict(finding: Finding) -> str:
     """Return the verdict with its reason and remark."""
     waits = finding.verdict == "not tested" and bool(finding.outcomes)
-    said = [finding.verdict + " yet" * waits + (f": {finding.reason}" if finding.reason else "")]
+    parts = [finding.verdict + " yet" * waits + (f": {finding.reason}" if finding.reason else "")]
     if finding.claim.remark and finding.deciding is not None:
-        said.append(finding.claim.remark)
-    return "; ".join(said)
+        parts.append(finding.claim.remark)
+    return "; ".join(parts)
 
 
 def tally(findings: Iterable[Finding]) -> str:
@@ -97,6 +97,50 @@ def rows(findings: Iterable[Finding]) -> list[tuple[str, ...]]:
         )
         for one in findings
     ]
+
+
+SUMMARY_COLUMNS = ("claim", "paper", "ours", "verdict")
+
+
+def summary(findings: Iterable[Finding]) -> list[tuple[str, ...]]:
+    """Return the cells of a short table, whose claims are links to their `section`."""
+    return [
+        (
+            f"[{one.claim.id}](#{_anchor(one.claim)})",
+            stated(one.claim),
+            _deciding(one),
+            one.verdict,
+        )
+        for one in findings
+    ]
+
+
+def section(finding: Finding) -> str:
+    """Return all there is to say of a claim, under a heading of its own, as Markdown."""
+    claim, values = finding.claim, ours(finding, "\n  - ")
+    items = [f"**Paper**: {stated(claim)} ({claim.where})".replace(":  (", ": (")]
+    if accepted(claim):
+        items.append(f"**Accepted**: {accepted(claim)}")
+    if values:
+        items.append(f"**Ours**:\n  - {values}")
+    items.append(f"**Verdict**: {verdict(finding)}")
+    if measured_by(finding):
+        items.append(f"**Measured by**: {measured_by(finding)}")
+    lines = "".join(f"- {item}\n" for item in items)
+    return f"## {claim.id}\n\n{claim.statement}.\n\n{lines}"
+
+
+def _anchor(claim: Claim) -> str:
+    """Return what a claim's heading is linked by, in Sphinx and on the web alike."""
+    return claim.id.replace(".", "")
+
+
+def _deciding(finding: Finding) -> str:
+    """Return our value that decides, without its scale."""
+    one = finding.deciding
+    if one is None or one.value is None:
+        return ""
+    return f"{number(one.value)} {finding.claim.unit or ''}".rstrip()
 
 
 def measured_by(finding: Finding) -> str:

@@ -28,7 +28,9 @@ def infer(
     from_prior: Annotated[
         bool, typer.Option("--from-prior", help="Without the network's guess, on any grid.")
     ] = False,
-    members: Annotated[int, typer.Option(help="Members that are written, an even number.")] = 64,
+    samples: Annotated[
+        int, typer.Option(help="Samples of the posterior that are written, an even number.")
+    ] = 64,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the ensembles.")] = 0,
     plot: Annotated[Path | None, typer.Option(help="Picture of the result.")] = None,
 ) -> None:
@@ -44,9 +46,9 @@ def infer(
     from disorder_landscape.dataset.store import read_dataset, write_dataset
     from disorder_landscape.files import check_netcdf, check_writable
     from disorder_landscape.inference.infer import infer as find
-    from disorder_landscape.inference.measurement import measurement_of
-    from disorder_landscape.inference.observation import stated_noise
     from disorder_landscape.inference.plot import plot_inference
+    from disorder_landscape.inference.problem.measurement import measurement_of
+    from disorder_landscape.inference.problem.observation import stated_noise
     from disorder_landscape.inference.progress import inference_progress
     from disorder_landscape.inference.report import noise_hint, parse_noise, summary
     from disorder_landscape.learning.model import load_model_config
@@ -64,9 +66,9 @@ def infer(
     if hint:
         print(hint, file=sys.stderr)
     unfinished = output.with_name(f"{output.name}.unfinished.json")
-    with resumable(), inference_progress() as told:
+    with resumable(), inference_progress() as progress:
         result = find(
-            measured, model, errors, not from_prior, members, seed, None, unfinished, told
+            measured, model, errors, not from_prior, samples, seed, None, unfinished, progress
         )
     write_dataset(result, output, made_here(), may_lack=["misfit"])  # of channels without data
     if plot is not None:

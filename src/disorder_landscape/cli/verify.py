@@ -52,9 +52,9 @@ def verify(
 
     from disorder_landscape.dataset.store import read_dataset, write_dataset
     from disorder_landscape.files import check_netcdf
-    from disorder_landscape.inference.comparison import table
     from disorder_landscape.inference.report import parse_noise
-    from disorder_landscape.inference.verification import verify as compare
+    from disorder_landscape.inference.verification.comparison import table
+    from disorder_landscape.inference.verify import verify as compare
     from disorder_landscape.learning.model import load_model_config
     from disorder_landscape.model.quantities import CONDUCTANCES
     from disorder_landscape.simulation import parse_grid
@@ -78,7 +78,7 @@ def verify(
         result = compare(predicted, measured, errors, controls, seed, config, tried, progress)
     result = result.assign_coords(measurement=[str(path) for path in measurements])
     if output is not None:
-        write_dataset(result, output, made_here(), may_lack=["p_members"])  # where they are few
+        write_dataset(result, output, made_here(), may_lack=["p_samples"])  # where they are few
     print("\n".join(table(result)))
     if output is not None:
         print(f"wrote {output}")

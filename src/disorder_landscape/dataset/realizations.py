@@ -11,7 +11,7 @@ import xarray as xr
 from disorder_landscape.config import DatasetConfig, WireConfig
 from disorder_landscape.model.disorder import disorder_realization
 from disorder_landscape.model.parameters import FloatArray, Nanowire
-from disorder_landscape.model.quantities import CONDUCTANCES, labelled
+from disorder_landscape.model.quantities import CONDUCTANCES, with_units
 from disorder_landscape.observables.conductance import conductance
 
 
@@ -86,4 +86,4 @@ def simulate(config: DatasetConfig, indices: Iterable[int]) -> xr.Dataset:
         "component": np.arange(1, config.components + 1),
         "site": np.arange(config.sites),
     }
-    return labelled(xr.Dataset(data, coords=coords))
+    return with_units(xr.Dataset(data, coords=coords))

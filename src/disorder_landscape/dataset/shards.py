@@ -122,7 +122,7 @@ def generate(
     workers : int
         Processes, each with one thread.
     progress : callable
-        Told the number of realizations of every shard that is made.
+        Called with the number of realizations of every shard that is made.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Where an attempt at explaining the data has ended, and whether the noise explains the rest."""
+"""The end of one attempt at explaining the data, and whether the noise explains the misfit."""
 
 from __future__ import annotations
 
@@ -6,58 +6,68 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from disorder_landscape.inference.observation import Observation, objective, squared_misfits
-from disorder_landscape.inference.population import Population
-from disorder_landscape.inference.unknowns import Gaussian
+from disorder_landscape.inference.posterior.importance_sampling import ImportanceSamples
+from disorder_landscape.inference.problem.gaussian import Gaussian
+from disorder_landscape.inference.problem.observation import (
+    Observation,
+    objective,
+    squared_misfits,
+)
 from disorder_landscape.model.parameters import FloatArray
 
 TOLERATED = 3.5
-"""χ² of all data, or of one channel's, may lie this many of its own deviations above its mean."""
+"""χ² of all data, or of one channel's, may be this many of its standard deviations above its
+mean."""
 
 
 @dataclass(frozen=True, eq=False)
 class Attempt:
-    """Where rounds and their polish have ended."""
+    """The end of the rounds and of the Gauss–Newton steps that follow them."""
 
-    last: Gaussian
-    """Where members of one more round would have been drawn."""
+    last_proposal: Gaussian
+    """From which one more round would have drawn its samples."""
     answer: Gaussian
+    """The posterior: Laplace's approximation, or mean and covariance of the importance samples."""
     data: FloatArray
-    """What the most probable wire shows, shape (datum,)."""
+    """Simulated data of the most probable wire, shape (datum,)."""
     objective: float
     """−2 log of its posterior density, up to a constant."""
     excess: float
-    """How many of its deviations χ² is above its mean: of all data, or of a channel, if more."""
+    """(χ² − its mean) / its standard deviation: of all data, or of one channel, if that is more."""
     rounds: int
     """How many there were."""
-    population: Population | None = None
-    """Members of the posterior, where it is not the normal distribution of the answer."""
+    importance_samples: ImportanceSamples | None = None
+    """Of the posterior, where it is no normal distribution."""
 
     @property
     def fits(self) -> bool:
-        """Whether the noise explains what is left of the misfit."""
+        """Whether the noise explains the misfit."""
         return self.excess <= TOLERATED
 
     @property
     def is_posterior(self) -> bool:
         """Whether the error bars are those of the posterior, as far as is known."""
-        return self.population is None or self.population.is_enough
+        return self.importance_samples is None or self.importance_samples.is_enough
 
-    def draw(self, rng: np.random.Generator, members: int) -> FloatArray:
-        """Return an even number of members of the posterior, shape (member, unknown)."""
-        return (self.answer if self.population is None else self.population).draw(rng, members)
+    def draw(self, rng: np.random.Generator, count: int) -> FloatArray:
+        """Return an even number of samples of the posterior, shape (sample, unknown)."""
+        posterior = self.answer if self.importance_samples is None else self.importance_samples
+        return posterior.draw(rng, count)
 
 
-def attempt_at(observation: Observation, last: Gaussian, answer: Gaussian, count: int) -> Attempt:
-    """Return the attempt whose rounds and polish have ended there."""
+def attempt_at(
+    observation: Observation, last_proposal: Gaussian, answer: Gaussian, rounds: int
+) -> Attempt:
+    """Return the attempt whose rounds and Gauss–Newton steps end there."""
     data = observation.simulate(answer.mean[None])[0]
     squares = squared_misfits(observation, data)
     height = float(objective(observation, answer.mean, data))
-    return Attempt(last, answer, data, height, chi_square_excess(observation, squares), count)
+    excess = chi_square_excess(observation, squares)
+    return Attempt(last_proposal, answer, data, height, excess, rounds)
 
 
 def chi_square_excess(observation: Observation, squares: FloatArray) -> float:
-    """Return how far χ² is above its mean in its deviations, the most over channels and over all.
+    """Return (χ² − its mean) / its standard deviation, the largest over all data and each channel.
 
     Parameters
     ----------

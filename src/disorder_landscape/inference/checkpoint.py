@@ -9,7 +9,15 @@ from typing import Any
 
 from disorder_landscape.files import read_json, write_json
 
+Cache = Callable[[str, Callable[[], dict[str, Any]]], dict[str, Any]]
+"""`Checkpoint.cached`: returns the result of a name, from the file or calculated now."""
+
 _MUST = "be the file of an interrupted inversion (delete it to start anew)"
+
+
+def uncached(name: str, calculate: Callable[[], dict[str, Any]]) -> dict[str, Any]:
+    """Calculate the result: the `Cache` that keeps nothing."""
+    return calculate()
 
 
 class Checkpoint:
@@ -18,7 +26,8 @@ class Checkpoint:
     Parameters
     ----------
     path : Path, optional
-        The file; None keeps nothing. What other runs have left there stays.
+        The file; None keeps nothing. Results of runs with another fingerprint are ignored, and stay
+        in the file.
     fingerprint : bytes
         Everything that the results depend on.
     """
@@ -34,8 +43,8 @@ class Checkpoint:
         """How many results of this run there are."""
         return len(self._known)
 
-    def recall(self, name: str, calculate: Callable[[], dict[str, Any]]) -> dict[str, Any]:
-        """Return the result of this name, after calculating and noting it if it is new."""
+    def cached(self, name: str, calculate: Callable[[], dict[str, Any]]) -> dict[str, Any]:
+        """Return the result of this name; if it is new, calculate and store it."""
         if name not in self._known:
             self._known[name] = calculate()
             if self.path is not None:

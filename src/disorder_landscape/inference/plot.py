@@ -1,4 +1,4 @@
-"""A picture of what `infer` has found."""
+"""A figure of what `infer` has found."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import numpy as np
 import xarray as xr
 
 from disorder_landscape.files import replacing
-from disorder_landscape.inference.measurement import Measurement
-from disorder_landscape.inference.report import alpha_with_deviation, error_bar
+from disorder_landscape.inference.problem.measurement import Measurement
+from disorder_landscape.inference.report import alpha_with_std, error_bar
 from disorder_landscape.inference.verdict import CONVERGED
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.model.quantities import CONDUCTANCES
@@ -19,7 +19,7 @@ from disorder_landscape.parts import needs
 FIGURE_SIZE = 7.06, 7.2
 """In inches; the width is that of a page of the paper's journal."""
 INTERVALS = (5, 95), (25, 75)
-"""Percentiles of the members between which V is shaded."""
+"""Percentiles of the samples between which V is shaded."""
 APART = np.array([-0.25, 0.25])
 """Where the pixels of a map are that has one value of µ or B alone."""
 
@@ -52,14 +52,14 @@ def plot_inference(result: xr.Dataset, measurement: Measurement, path: Path) -> 
         panels = figure.subplot_mosaic(
             [
                 ["V"] * 4,
-                ["deviation"] * 4,
+                ["std"] * 4,
                 ["c", "c", "misfit", "misfit"],
                 ["measured", "explained", "T", "P"],
             ],
             height_ratios=(1.0, 0.6, 0.9, 1.3),
         )
         _potential(panels["V"], result)
-        _deviation(panels["deviation"], result)
+        _potential_std(panels["std"], result)
         _components(panels["c"], result)
         _misfit(panels["misfit"], result)
         _conductances(figure, panels["measured"], panels["explained"], result, measurement)
@@ -77,31 +77,31 @@ def _potential(panel: Any, result: xr.Dataset) -> None:
     panel.plot(site, V, "k", lw=0.8)
     panel.set(ylabel=r"$V_\mathrm{dis}$ [meV]", xlim=(site[0], site[-1]))
     panel.tick_params(labelbottom=False)
-    panel.set_title("mean of the members")
+    panel.set_title("mean of the posterior")
 
 
-def _deviation(panel: Any, result: xr.Dataset) -> None:
-    """Show the members' intervals about their mean, which V's own scale would hide."""
+def _potential_std(panel: Any, result: xr.Dataset) -> None:
+    """Show the samples' intervals about their mean, which V's own scale would hide."""
     off = 1e3 * (result["potential"] - result["potential_mean"]).to_numpy()
     site = result["site"].to_numpy()
     for (low, high), alpha in zip(INTERVALS, (0.25, 0.5), strict=True):
         between = np.percentile(off, [low, high], axis=0)
-        label = f"{high - low} % of the members"
+        label = f"{high - low} % of the samples"
         panel.fill_between(site, *between, color="C0", alpha=alpha, lw=0, label=label)
     panel.set(xlabel="site", ylabel="off [µeV]", xlim=(site[0], site[-1]))
     bar = f"error bar of V: {error_bar(result):.2g} µeV, root mean square"
-    panel.set_title(f"members minus mean; {bar}")
+    panel.set_title(f"samples minus mean; {bar}")
     low, high = panel.get_ylim()
     panel.set_ylim(low, high + 0.5 * (high - low))  # room for the legend
     panel.legend(ncols=2, frameon=False, loc="upper center")
 
 
 def _components(panel: Any, result: xr.Dataset) -> None:
-    c, bar = result["components_mean"], result["components_deviation"]
+    c, bar = result["components_mean"], result["components_std"]
     panel.errorbar(result["component"], c, bar, fmt="k.", capsize=2, lw=0.8)
     panel.axhline(0.0, color="0.7", lw=0.5)
     panel.set(xlabel="component $n$", ylabel="$c_n$ [meV]")
-    panel.set_title(rf"$\alpha$ = {alpha_with_deviation(result)}")
+    panel.set_title(rf"$\alpha$ = {alpha_with_std(result)}")
 
 
 def _misfit(panel: Any, result: xr.Dataset) -> None:

@@ -7,18 +7,18 @@ import xarray as xr
 
 from disorder_landscape.arguments import numbers_of
 from disorder_landscape.config import TrainingConfig
-from disorder_landscape.inference.observation import noise_of_channels, one_or_each
+from disorder_landscape.inference.problem.observation import noise_of_channels, one_or_each
 from disorder_landscape.inference.verdict import CONVERGED
 from disorder_landscape.learning.scaling import NOISE_FLOOR
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.model.quantities import CONDUCTANCES
 
-UNUSED_TO = 2.0
-"""A network guesses badly from errors that are more than so many times those of its training."""
+UNTRAINED = 2.0
+"""A network guesses badly if errors are more than so many times those of its training."""
 ALIKE = 1.1
-"""Misfits are the noise's, if they differ by less than this factor between the channels, …"""
+"""Misfits are those of noise if they differ by less than this factor between the channels, …"""
 OTHERWISE = 1.25
-"""… which is not what was stated, if they are more or less than it by this factor."""
+"""… and that noise is not the stated one if they are more or less than it by this factor."""
 
 NOT_TO_BE_TRUSTED = "so neither the error bars below nor P(topological) are to be trusted"
 
@@ -37,9 +37,9 @@ def parse_noise(text: str) -> float | dict[str, float]:
 
 
 def noise_hint(training: TrainingConfig, noise: float | dict[str, float]) -> str:
-    """Return a line about a network that has never seen such errors; empty if it has."""
+    """Return a line about a network that was trained with smaller errors only, or nothing."""
     most, known = noise_of_channels(noise).max(), training.largest_noise
-    if training.noise_up_to is not None or most <= UNUSED_TO * max(known, NOISE_FLOOR):
+    if training.noise_up_to is not None or most <= UNTRAINED * max(known, NOISE_FLOOR):
         return ""
     return (
         f"This network was trained with errors of up to {known:g} e²/h: for {most:g} e²/h one of "
@@ -70,35 +70,35 @@ def stated_noise_hint(misfit: FloatArray, noise: FloatArray) -> str:
     )
 
 
-def alpha_with_deviation(result: xr.Dataset) -> str:
-    """Return α and its deviation as text."""
-    mean, deviation = float(result["alpha_mean"]), float(result["alpha_deviation"])
-    said = f"± {deviation:.2g} meV nm" if deviation else "meV nm, as in the model"
-    return f"{mean:.5g} {said}"
+def alpha_with_std(result: xr.Dataset) -> str:
+    """Return α and its standard deviation as text."""
+    mean, std = float(result["alpha_mean"]), float(result["alpha_std"])
+    error = f"± {std:.2g} meV nm" if std else "meV nm, as in the model"
+    return f"{mean:.5g} {error}"
 
 
 def error_bar(result: xr.Dataset) -> float:
     """Return that of V in µeV, root mean square over the sites."""
-    return 1e3 * float(np.sqrt((result["potential_deviation"] ** 2).mean()))
+    return 1e3 * float(np.sqrt((result["potential_std"] ** 2).mean()))
 
 
 def summary(result: xr.Dataset) -> list[str]:
-    """Return the lines that tell what `infer` has found."""
+    """Return the lines that say what `infer` has found."""
     attrs = result.attrs
     lines = [
         f"verdict         {attrs['verdict']}",
         f"from            {attrs['start']}",
         f"attempts        {attrs['attempts']}, rounds: {attrs['rounds']}",
         f"error bar of V  {error_bar(result):.3g} µeV, root mean square over the sites",
-        f"alpha           {alpha_with_deviation(result)}",
+        f"alpha           {alpha_with_std(result)}",
     ]
     if attrs["verdict"] != CONVERGED:
         lines.insert(1, f"                {NOT_TO_BE_TRUSTED}")
     misfits = zip(result["channel"].to_numpy(), result["misfit"].to_numpy(), strict=True)
     for (name, misfit), noise in zip(misfits, attrs["noise"], strict=True):
-        said = (
+        value = (
             f"{misfit:.5f} e²/h; noise: {noise:g} e²/h" if np.isfinite(misfit) else "not measured"
         )
-        lines.append(f"misfit of {name}  {said}")
+        lines.append(f"misfit of {name}  {value}")
     hint = stated_noise_hint(result["misfit"].to_numpy(), np.asarray(attrs["noise"]))
     return [*lines, hint] if hint else lines

@@ -1,11 +1,11 @@
-"""What has become of an inversion: converged, not converged, or not described by the model."""
+"""The verdict on an inversion: converged, not converged, or not described by the model."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from disorder_landscape.inference.attempt import TOLERATED, Attempt, best
-from disorder_landscape.inference.observation import Observation, squared_misfits
+from disorder_landscape.inference.problem.observation import Observation, squared_misfits
 
 CONVERGED = "converged"
 NOT_CONVERGED = "not converged"
@@ -13,27 +13,28 @@ NOT_DESCRIBED = "not described by the model"
 """The verdicts."""
 
 WRONG_MISFIT = 0.001
-"""Difference in e²/h, root mean square, that tells a wrong answer from the right one. If the noise
-hides less, an answer that fits is right; otherwise a second attempt must agree: of 200 wires of ten
+"""The least root-mean-square difference in e²/h of a wrong answer and the data. If the noise hides
+less, an answer that fits is right. Otherwise a second attempt must agree: of 200 wires of ten
 components with errors of 0.01 e²/h, three had a wrong answer that fitted."""
 FEW_DATA = 5
-"""For each unknown: a wrong answer may fit fewer, whatever the noise."""
+"""Data for each unknown; a wrong answer may fit fewer, whatever the noise is."""
 SAME_ANSWER = 2.0
-"""Two optima are the same if they are closer than this many of their own deviations, root mean
-square over the principal axes (in valleys that bend they differ by one or so)."""
+"""Two optima are the same if they are closer than this many of their standard deviations, root mean
+square over the principal axes. (Where the posterior bends they differ by about one.)"""
 SAME_MISFIT = 0.05
-"""Two misfits are the same of which what the noise leaves unexplained differs by less than this
-part. If the best that can be found is twice found to be so bad, in different places even, then it
-is the model that does no better."""
+"""Two misfits are the same if what the noise leaves unexplained of them differs by less than this
+part. If two attempts end equally far off the data, even in different places, the model can do no
+better."""
 
 
 def verdict(observation: Observation, attempts: list[Attempt]) -> str:
-    """Say what became of it.
+    """Return the verdict on the attempts at explaining the data.
 
-    An answer that explains the data has converged, if a wrong one could not or another attempt
-    agrees. Where none explains the data but attempts agree on one, or on how far off the best of
-    them are, it is the model that cannot; where they do not agree either, a better answer may have
-    been missed.
+    - Converged: the best answer explains the data, and either a wrong answer could not, or another
+      attempt agrees.
+    - Not described by the model: no answer explains the data, but another attempt agrees with the
+      best one, or is as far off the data.
+    - Not converged: otherwise. A better answer may have been missed.
     """
     chosen = best(attempts)
     others = [attempt for attempt in attempts if attempt is not chosen]
@@ -46,7 +47,7 @@ def verdict(observation: Observation, attempts: list[Attempt]) -> str:
 
 
 def is_surely_right(observation: Observation) -> bool:
-    """Return whether the noise hides so little that an answer that fits needs no second attempt."""
+    """Return whether the noise is so small that an answer that fits needs no second attempt."""
     count = observation.data.size
     hidden = TOLERATED * np.sqrt(2 / count) * observation.variance.mean()
     return bool(hidden < WRONG_MISFIT**2 and count >= FEW_DATA * len(observation.unknowns.names))
@@ -67,5 +68,5 @@ def same_misfit(observation: Observation, one: Attempt, other: Attempt) -> bool:
 
 
 def _misfit(observation: Observation, attempt: Attempt) -> float:
-    """Return the root mean square of what the answer leaves of the data, in their errors."""
+    """Return the answer's root-mean-square misfit in units of the data's errors."""
     return float(np.sqrt(squared_misfits(observation, attempt.data).mean()))

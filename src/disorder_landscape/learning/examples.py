@@ -68,7 +68,7 @@ class Examples:
         return X
 
     def _noise(self, examples: int, rng: np.random.Generator) -> ConductanceArray:
-        """Return the deviation of each example's errors in e²/h, to multiply conductances with."""
+        """Return the standard deviation of each example's errors in e²/h."""
         low, high = self.training.noise, self.training.noise_up_to
         if high is None:
             return np.array(low, dtype=np.float32)

@@ -59,12 +59,12 @@ def score(Y: FloatArray, Y_predicted: FloatArray, scaler: LabelScaler, sites: in
     by_label = r2_score(scaler.scale(Y), scaler.scale(Y_predicted), multioutput="raw_values")
     r2 = {name: float(one) for name, one in zip(scaler.names, by_label, strict=True)}
     error = Y_predicted - Y
-    deviation = dict(zip(scaler.names, error.std(axis=0).tolist(), strict=True))
+    std = dict(zip(scaler.names, error.std(axis=0).tolist(), strict=True))
     return Scores(
         r2=float(np.mean([one for name, one in r2.items() if name != "mean"])),
         r2_by_label=r2,
         delta_V=float(np.std(potential_from_components(error[:, : scaler.components], sites))),
-        delta_alpha=deviation.get("alpha"),
+        delta_alpha=std.get("alpha"),
         realizations=len(Y),
-        delta_mean=deviation.get("mean"),
+        delta_mean=std.get("mean"),
     )

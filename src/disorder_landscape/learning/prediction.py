@@ -10,7 +10,7 @@ import xarray as xr
 from disorder_landscape.learning.model import TrainedModel, load_model, on_grid_of
 from disorder_landscape.learning.scaling import conductance_array
 from disorder_landscape.model.disorder import potential_from_components
-from disorder_landscape.model.quantities import labelled
+from disorder_landscape.model.quantities import with_units
 
 
 def predict(model: str | Path | TrainedModel, G: xr.Dataset) -> xr.Dataset:
@@ -55,7 +55,7 @@ def predict(model: str | Path | TrainedModel, G: xr.Dataset) -> xr.Dataset:
         "component": np.arange(1, dataset.components + 1),
         "site": np.arange(dataset.sites),
     }
-    predicted = labelled(xr.Dataset(data, coords=coords, attrs={"config_hash": dataset.hash}))
+    predicted = with_units(xr.Dataset(data, coords=coords, attrs={"config_hash": dataset.hash}))
     if "realization" not in G.dims:
         return predicted.isel(realization=0)
     if "realization" in G.coords:

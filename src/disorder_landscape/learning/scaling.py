@@ -131,7 +131,8 @@ class InputScaler:
     Conductances reach from 10⁻⁴ to 2 e²/h; asinh is linear below s and logarithmic above, which
     shows the network the small ones too. Some pixels hardly vary over the training set: nonlocal
     ones at B = 0 by 10⁻¹⁰ e²/h. Errors of measurement would be all that the network sees of them,
-    so that the deviation is taken as if each conductance had the experiment's, or the training's.
+    so that the standard deviation is taken as if each conductance had the experiment's errors, or
+    the training's.
 
     Parameters
     ----------

@@ -14,6 +14,7 @@ from tqdm import tqdm
 
 from disorder_landscape.arguments import require
 from disorder_landscape.config import Config, TrainingConfig
+from disorder_landscape.estimates import Pace
 from disorder_landscape.files import write_json
 from disorder_landscape.learning.backend import import_keras
 from disorder_landscape.learning.checkpoints import (
@@ -125,6 +126,8 @@ def _train_one(
     model, curves = _start_or_resume(folder, config, examples)
     steps = Steps(model, examples, config.training)
     per_epoch = len(examples) * config.training.passes
+    left = sum(config.training.epochs) - len(curves)
+    pace = Pace("train", left * per_epoch, tqdm.write if progress else lambda said: None)
     with tqdm(
         total=sum(config.training.epochs) * per_epoch,
         initial=len(curves) * per_epoch,
@@ -134,7 +137,7 @@ def _train_one(
         for epoch, set_ in numbered_epochs(config.training)[len(curves) :]:
             bar.set_description(f"epoch {epoch}/{sum(config.training.epochs)}")
             started = time.perf_counter()
-            loss = steps.take_epoch(epoch, bar)
+            loss = steps.take_epoch(epoch, bar, pace)
             r2 = scores(model).r2
             seconds = time.perf_counter() - started
             curves.append(
@@ -153,7 +156,7 @@ class Steps:
     examples: Examples
     training: TrainingConfig
 
-    def take_epoch(self, epoch: int, bar: Any) -> float:
+    def take_epoch(self, epoch: int, bar: Any, pace: Pace) -> float:
         """Take one step per batch, in an order of their own; return the mean loss per example."""
         # Functions of seed and epoch alone, so that a resumed training sees the same.
         shuffle = np.random.default_rng([self.training.seed, epoch])
@@ -173,6 +176,7 @@ class Steps:
             total += loss * len(which)
             bar.set_postfix({"loss": f"{total / (start + len(which)):.4f}"}, refresh=False)
             bar.update(len(which))
+            pace.step(len(which))
         return total / len(order)
 
 

@@ -89,10 +89,10 @@ def mean_reduction(
     noise_std: float = NOISE_STD,
     mean_std: float = MEAN_STD,
 ) -> float:
-    """Return κ, by which the mean c₀/√N of the noise is multiplied to have the given deviation.
+    """Return κ, by which the mean c₀/√N of the noise is multiplied to get the given std.
 
-    Its deviation before is exact: each white-noise value enters the mean with the weight that the
-    kernel gives it within the wire.
+    Its standard deviation before is exact: each white-noise value enters the mean with the weight
+    that the kernel gives it within the wire.
     """
     weights = np.convolve(np.ones(sites), kernel(correlation_length, amplitude), mode="full")
     return float(mean_std / (noise_std * np.sqrt(weights @ weights) / sites))

@@ -8,7 +8,7 @@ CONDUCTANCES = ("G_LL", "G_RR", "G_LR", "G_RL")
 """Order of the conductance matrix's elements wherever they share an axis."""
 AXES = ("mu", "B", "bias")
 """Order of the axes over which they are measured, the configurations K."""
-LABELS = {
+QUANTITIES = {
     "mu": ("chemical potential", "meV"),
     "B": ("magnetic field along the wire", "T"),
     "bias": ("bias voltage", "meV"),
@@ -27,29 +27,29 @@ LABELS = {
     "alpha": ("spin-orbit coupling", "meV nm"),
     "potential": ("disorder potential without barriers", "meV"),
     "components_mean": ("mean of the components over the posterior", "meV"),
-    "components_deviation": ("standard deviation of the components", "meV"),
+    "components_std": ("standard deviation of the components", "meV"),
     "alpha_mean": ("mean of the spin-orbit coupling over the posterior", "meV nm"),
-    "alpha_deviation": ("standard deviation of the spin-orbit coupling", "meV nm"),
+    "alpha_std": ("standard deviation of the spin-orbit coupling", "meV nm"),
     "potential_mean": ("mean of the disorder potential over the posterior", "meV"),
-    "potential_deviation": ("standard deviation of the disorder potential", "meV"),
+    "potential_std": ("standard deviation of the disorder potential", "meV"),
     "misfit": ("root-mean-square difference of explained and measured conductances", "e^2/h"),
-    "P_topological": ("share of the members with det r < 0", "1"),
-    "member": ("member of the posterior", "1"),
+    "P_topological": ("share of the samples with det r < 0", "1"),
+    "sample": ("sample of the posterior", "1"),
     "map_mu": ("chemical potential", "meV"),
     "map_B": ("magnetic field along the wire", "T"),
 }
 """Long name and units of each variable and coordinate."""
 
 
-def labelled(dataset: xr.Dataset) -> xr.Dataset:
+def with_units(dataset: xr.Dataset) -> xr.Dataset:
     """Return the dataset with long_name and units on all variables that have them.
 
     What a name with the ending _predicted stands for is the network's guess of it.
     """
     for name in dataset.variables:
         base = str(name).removesuffix("_predicted")
-        if base in LABELS:
-            long_name, units = LABELS[base]
+        if base in QUANTITIES:
+            long_name, units = QUANTITIES[base]
             guess = "" if base == name else "predicted "
             dataset[name].attrs.update(long_name=guess + long_name, units=units)
     return dataset

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from disorder_landscape.arguments import grid_in, number_in
 from disorder_landscape.model.hamiltonian import FULL_TURN
 from disorder_landscape.model.parameters import BOLTZMANN, TEMPERATURE, FloatArray, Nanowire
-from disorder_landscape.model.quantities import CONDUCTANCES, labelled
+from disorder_landscape.model.quantities import CONDUCTANCES, with_units
 from disorder_landscape.solver import routes
 from disorder_landscape.solver.energy_grid import ENERGY_SPACING, thermal_grid
 
@@ -46,7 +46,7 @@ def conductance(
         Average over a grid of energies of at most this spacing in meV, at most kT, as the paper
         does, instead of exactly. Kwant always does, by default at 0.5 µeV.
     progress : callable, optional
-        Told how many pairs (μ, B) have just been done, and how many there are in all.
+        Called with the number of pairs (μ, B) that have just been done, and that of all pairs.
     theta : float
         Angle of the field relative to the wire in radians, θ of Eq. S1. All but 0, the paper's,
         take a route that is some fifty times slower.
@@ -75,7 +75,7 @@ def conductance(
     temperature = number_in("temperature", temperature, 0.0, 10.0, "K")
     theta = number_in("theta", theta, -FULL_TURN, FULL_TURN, "radians")
     shape = (len(wires), grids["mu"].size, grids["B"].size)
-    told = progress if progress is not None else lambda done, total: None
+    report = progress if progress is not None else lambda done, total: None
     exact = temperature > 0 and solver == "fast" and energy_spacing is None
     G = np.empty((*shape, grids["bias"].size, 4))
     error, energies = np.zeros(shape), np.zeros(shape, dtype=np.int64)
@@ -90,7 +90,7 @@ def conductance(
                 temperature,
                 theta,
             )
-            told(error[at].size, error.size)
+            report(error[at].size, error.size)
     else:
         if temperature > 0:
             kT = BOLTZMANN * temperature  # a coarser grid would miss the kernel altogether
@@ -104,7 +104,7 @@ def conductance(
             some_wires, mus, fs = wires[some], grids["mu"][points], grids["B"][fields]
             G0 = routes.bare_conductance(some_wires, mus, fs, omega, theta, solver)
             G[some, points, fields] = np.einsum("wmbkse,vks->wmbve", G0, weights)
-            told(G0[..., 0, 0, 0].size, error.size)
+            report(G0[..., 0, 0, 0].size, error.size)
     missing = np.isnan(G).any(axis=(3, 4)).sum()
     if missing:
         message = f"At {missing} of {error.size} points (wire, μ, B) a conductance is no number"
@@ -117,7 +117,7 @@ def conductance(
     attrs = {"temperature": temperature, "solver": solver, "theta": theta}
     if len({w.barrier for w in wires}) == 1:
         attrs["barrier"] = wires[0].barrier
-    dataset = labelled(xr.Dataset(data, coords=grids, attrs=attrs))
+    dataset = with_units(xr.Dataset(data, coords=grids, attrs=attrs))
     return dataset.isel(realization=0) if isinstance(wire, Nanowire) else dataset
 
 

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from disorder_landscape.arguments import grid_in, require
 from disorder_landscape.model.parameters import Nanowire
-from disorder_landscape.model.quantities import CONDUCTANCES, LABELS, labelled
+from disorder_landscape.model.quantities import CONDUCTANCES, QUANTITIES, with_units
 from disorder_landscape.solver import compiled
 from disorder_landscape.solver.compiled import GROWTH_LIMIT
 from disorder_landscape.solver.lead_slopes import rotated_lead_slopes
@@ -73,9 +73,9 @@ def conductance_gradient(
             values = by_V[k] if i == 0 else others[k, i - 1]
             dims = (*grids, "site") if i == 0 else tuple(grids)
             attrs = {
-                "long_name": f"derivative of the {LABELS[name][0]} with respect to {parameter}",
+                "long_name": f"derivative of the {QUANTITIES[name][0]} with respect to {parameter}",
                 "units": f"e^2/h/({PARAMETERS[parameter]})",
             }
             data[f"d{name}_d{parameter}"] = (dims, values, attrs)
     coordinates = {**grids, "site": np.arange(wire.sites)}
-    return labelled(xr.Dataset(data, coords=coordinates, attrs={"temperature": 0.0}))
+    return with_units(xr.Dataset(data, coords=coordinates, attrs={"temperature": 0.0}))

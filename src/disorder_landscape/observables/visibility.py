@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from disorder_landscape.arguments import grid_in, number_in, require
 from disorder_landscape.model.hamiltonian import FULL_TURN
 from disorder_landscape.model.parameters import FloatArray, Nanowire
-from disorder_landscape.model.quantities import labelled
+from disorder_landscape.model.quantities import with_units
 from disorder_landscape.solver import routes
 
 
@@ -64,7 +64,7 @@ def topological_visibility(
         warnings.warn(f"{message}: there the solver failed.", RuntimeWarning, stacklevel=2)
     coords = {"lead": ["L", "R"], **grids}
     data = {"T_IV": (("realization", *coords), determinant)}
-    T: xr.DataArray = labelled(xr.Dataset(data, coords=coords))["T_IV"]
+    T: xr.DataArray = with_units(xr.Dataset(data, coords=coords))["T_IV"]
     return T.isel(realization=0) if isinstance(wire, Nanowire) else T
 
 

@@ -37,7 +37,7 @@ PANEL = 0.1
 WIDER_ABOVE = 20.0
 """How much wider they are above the gap, where the parent superconductor broadens every level."""
 NEAREST = 1e-7
-"""Smallest |u| that is told from the gap edge itself, where Σ(ω) is infinite."""
+"""Smallest |u| that is distinguished from the gap edge itself, where Σ(ω) is infinite."""
 LARGEST_G = 4.0
 """Bound of |G₀| in e²/h: two for each of the two channels of a lead."""
 

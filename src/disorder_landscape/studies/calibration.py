@@ -25,8 +25,8 @@ from disorder_landscape.arguments import require
 from disorder_landscape.config import Positive
 from disorder_landscape.files import replacing
 from disorder_landscape.inference.attempt import best
-from disorder_landscape.inference.inversion import invert
-from disorder_landscape.inference.posterior import independence_chain
+from disorder_landscape.inference.invert import invert
+from disorder_landscape.inference.posterior.markov_chain import independence_chain
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.parts import needs
 from disorder_landscape.studies import fresh_wires
@@ -80,14 +80,14 @@ class CalibrationPlan(Plan):
         rng = np.random.default_rng(task.index)
         chain = independence_chain(observation, answer, self.length, rng)
         scale = np.sqrt(np.diag(answer.covariance))
-        apart = float((abs(chain.members.mean(0) - answer.mean) / scale).max())
+        apart = float((abs(chain.samples.mean(0) - answer.mean) / scale).max())
         return [
             {
                 "model": task.model,
                 "index": task.index,
                 "acceptance": round(chain.acceptance, 3),
-                "apart_in_deviations": round(apart, 3),
-                "ratio_of_deviations": round(float((chain.members.std(0) / scale).mean()), 3),
+                "apart_in_stds": round(apart, 3),
+                "ratio_of_stds": round(float((chain.samples.std(0) / scale).mean()), 3),
             }
         ]
 
@@ -102,14 +102,14 @@ class CalibrationPlan(Plan):
         return Derived(numbers, draw=partial(draw, table))
 
 
-def deviations(table: pd.DataFrame) -> FloatArray:
-    """Return the truths' distances from the answers in deviations, all unknowns of all wires."""
-    return np.concatenate([np.array(text.split(), dtype=float) for text in table["deviations"]])
+def z_scores(table: pd.DataFrame) -> FloatArray:
+    """Return the truths' distances from the answers in standard deviations, all unknowns."""
+    return np.concatenate([np.array(text.split(), dtype=float) for text in table["z_scores"]])
 
 
 def coverage(table: pd.DataFrame) -> FloatArray:
     """Return which part of the truths the central intervals of COVERAGE hold."""
-    z = abs(deviations(table))
+    z = abs(z_scores(table))
     return np.array([(z < norm.ppf((1 + part) / 2)).mean() for part in COVERAGE])
 
 
@@ -118,14 +118,16 @@ def joint_quantiles(table: pd.DataFrame) -> FloatArray:
 
     All unknowns count at once, by Mahalanobis' distance: uniform over the wires if error bars and
     their correlations are right. `coverage` does not see correlations, nor a single wrong axis.
-    Where mean and covariance are those of a population that is worth n members, the square of the
-    distance is 1 + 1/n times Hotelling's T² (Ann. Math. Stat. 2, 360 (1931)).
+    Where mean and covariance are those of samples with the effective sample size n, the square of
+    the distance is 1 + 1/n times Hotelling's T² (Ann. Math. Stat. 2, 360 (1931)).
     """
-    squares, unknowns = table["mahalanobis"], table["deviations"].str.split().str.len()
-    n = np.maximum(table["worth"], unknowns + 1)
+    squares, unknowns = table["mahalanobis"], table["z_scores"].str.split().str.len()
+    n = np.maximum(table["effective_sample_size"], unknowns + 1)
     ratio = squares * (n - unknowns) / (unknowns * (n - 1) * (1 + 1 / n))
     few = f.cdf(ratio, unknowns, n - unknowns)
-    return np.asarray(np.where(table["worth"].isna(), chi2.cdf(squares, unknowns), few))
+    return np.asarray(
+        np.where(table["effective_sample_size"].isna(), chi2.cdf(squares, unknowns), few)
+    )
 
 
 def joint_coverage(table: pd.DataFrame) -> FloatArray:
@@ -143,7 +145,7 @@ def calibration(table: pd.DataFrame) -> dict[str, object]:
     for (model, noise), some in table[table["noise"] > 0].groupby(["model", "noise"]):
         one: dict[str, object] = {"wires": len(some)}
         for which, quantiles, parts in (
-            ("", norm.cdf(deviations(some)), coverage(some)),
+            ("", norm.cdf(z_scores(some)), coverage(some)),
             ("joint_", joint_quantiles(some), joint_coverage(some)),
         ):
             inside = dict(zip(map(str, COVERAGE), parts.round(4).tolist(), strict=True))
@@ -177,7 +179,7 @@ def draw(table: pd.DataFrame, path: Path) -> None:
         )
         if not wires.empty:
             az.plot_ecdf(
-                norm.cdf(deviations(wires)), cdf=uniform.cdf, difference=True,
+                norm.cdf(z_scores(wires)), cdf=uniform.cdf, difference=True,
                 confidence_bands="auto", ci_prob=0.95, ax=panel,
                 eval_points=np.linspace(0, 1, 101),
             )  # fmt: skip

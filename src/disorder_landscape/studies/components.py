@@ -2,7 +2,7 @@
 
 The paper reckons with 1.2 million core-hours for the training set of 30 components (S-II.3). Here
 each wire is inverted by itself, from the disorder model's prior; for 30 components a network that
-knows far too little to answer helps on the way (`word`).
+is far from the answer serves as a source of features (`inference.search.network_features`).
 """
 
 from __future__ import annotations
@@ -82,8 +82,8 @@ class ComponentsPlan(Plan):
         -------
         list of dict
             V errors in meV, root mean square over the sites: `prior_error` of V = 0, `site_error`
-            of the answer; `mahalanobis`, the truth's squared distance in deviations over the number
-            of unknowns; and the outcome of `Inverted`.
+            of the answer; `mahalanobis`, the truth's squared distance in standard deviations over
+            the number of unknowns; and the outcome of `Inverted`.
         """
         observation, truth = measured_wire(self.grid(task.components), task.noise, task.index)
         network = model_of(shipped_model(THIRTY)) if task.components == THIRTY_COMPONENTS else None

@@ -21,10 +21,11 @@ from disorder_landscape.chain import MODELS, shipped_model
 from disorder_landscape.config import DatasetConfig, Positive
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.inference.attempt import Attempt, best
-from disorder_landscape.inference.inversion import invert
-from disorder_landscape.inference.measurement import Measurement, empty_measurement
-from disorder_landscape.inference.observation import Observation, noise_of_channels
-from disorder_landscape.inference.unknowns import Gaussian, Unknowns
+from disorder_landscape.inference.invert import invert
+from disorder_landscape.inference.problem.gaussian import Gaussian
+from disorder_landscape.inference.problem.measurement import Measurement, empty_measurement
+from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
+from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.verdict import verdict
 from disorder_landscape.learning.model import TrainedModel, load_model
 from disorder_landscape.model.parameters import FloatArray
@@ -34,7 +35,7 @@ SEED = 2026
 """Of the fresh wires; the datasets' is 0."""
 WRONG = 0.005, 4.0
 """An answer is wrong whose V is off by more than this in meV and by more than so many of its own
-deviations, root mean square over the sites."""
+standard deviations, root mean square over the sites."""
 
 
 def _shipped(model: str) -> str:
@@ -127,8 +128,8 @@ class Inverted:
 
     chosen: Attempt
     outcome: dict[str, object]
-    """`spread`, the answer's own deviation of V in meV; `worth` of its population, NaN where it is
-    none; `excess`, `verdict`, `attempts`, `rounds`, `seconds`."""
+    """`spread`, the answer's own standard deviation of V in meV; `effective_sample_size`, NaN
+    without importance sampling; `excess`, `verdict`, `attempts`, `rounds`, `seconds`."""
 
     @property
     def answer(self) -> Gaussian:
@@ -143,8 +144,10 @@ def inverted(observation: Observation, network: TrainedModel | None, seed: int) 
     seconds = time.perf_counter() - begun
     chosen = best(attempts)
     outcome: dict[str, object] = {
-        "spread": observation.unknowns.site_deviation(chosen.answer.covariance),
-        "worth": np.nan if chosen.population is None else chosen.population.worth,
+        "spread": observation.unknowns.site_std(chosen.answer.covariance),
+        "effective_sample_size": np.nan
+        if chosen.importance_samples is None
+        else chosen.importance_samples.effective_sample_size,
         "excess": chosen.excess,
         "verdict": verdict(observation, attempts),
         "attempts": len(attempts),

@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from disorder_landscape.inference.first_guess import network_labels
+from disorder_landscape.inference.search.first_guess import network_labels
 from disorder_landscape.studies.fresh_wires import (
     FreshWiresPlan,
     Task,
@@ -39,7 +39,7 @@ def inversion_row(task: Task) -> dict[str, object]:
     dict
         V errors in meV, root mean square over the sites; the errors of α in meV nm; `scaled_error`,
         the mean square error of the paper's labels in units of their variance, which is 1 − R²;
-        `deviations`, the true unknowns' distances from the answer in units of its deviations;
+        `z_scores`, the true unknowns' distances from the answer in its standard deviations;
         `mahalanobis`, all of them together squared; and the outcome of `Inverted`.
     """
     observation, truth = fresh_wire(task)
@@ -63,4 +63,4 @@ def inversion_row(task: Task) -> dict[str, object]:
         **found.outcome,
     }
     z = (truth - mean) / np.sqrt(np.diag(found.answer.covariance))
-    return {**rounded(row), "deviations": " ".join(f"{one:.3f}" for one in z)}
+    return {**rounded(row), "z_scores": " ".join(f"{one:.3f}" for one in z)}

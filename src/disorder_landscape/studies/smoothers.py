@@ -1,4 +1,4 @@
-"""Kind "smoothers": our rounds and polish beside a library's ES-MDA, from the same starts.
+"""Kind "smoothers": our search beside a library's ES-MDA, from the same starts.
 
 The library is iterative_ensemble_smoother; each of its steps has a part of the inflation of the one
 before.
@@ -13,11 +13,11 @@ import numpy as np
 from pydantic import Field
 
 from disorder_landscape.config import Positive
-from disorder_landscape.inference.first_guess import network_guess
-from disorder_landscape.inference.observation import Observation
-from disorder_landscape.inference.polish import polish
-from disorder_landscape.inference.rounds import RoundSettings, rounds
-from disorder_landscape.inference.unknowns import Gaussian
+from disorder_landscape.inference.problem.gaussian import Gaussian
+from disorder_landscape.inference.problem.observation import Observation
+from disorder_landscape.inference.search.first_guess import network_guess
+from disorder_landscape.inference.search.gauss_newton import gauss_newton
+from disorder_landscape.inference.search.regression_rounds import RoundSettings, regression_rounds
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.parts import needs
 from disorder_landscape.studies.fresh_wires import (
@@ -37,7 +37,7 @@ class SmoothersPlan(FreshWiresPlan):
     """Inversions of fresh wires by two smoothers: errors and seconds."""
 
     kind: Literal["smoothers"]
-    members: Positive
+    ensemble: Positive
     """Of the library's ensemble."""
     steps: Positive
     """Of the library."""
@@ -62,11 +62,11 @@ class SmoothersPlan(FreshWiresPlan):
     def _library(
         self, observation: Observation, start: Gaussian, seed: int
     ) -> tuple[FloatArray, float]:
-        """Return the mean of ES-MDA's members in the end, and their deviation of V in meV."""
+        """Return the mean of ES-MDA's last ensemble, and its standard deviation of V in meV."""
         with needs("dev"):
             from iterative_ensemble_smoother import ESMDA
 
-        X = start.draw(np.random.default_rng(seed), self.members)
+        X = start.draw(np.random.default_rng(seed), self.ensemble)
         smoother = ESMDA(
             covariance=observation.variance,
             observations=observation.data,
@@ -76,12 +76,12 @@ class SmoothersPlan(FreshWiresPlan):
         for _ in range(smoother.num_assimilations()):
             smoother.prepare_assimilation(Y=observation.simulate(X).T, truncation=TRUNCATION)
             X = smoother.assimilate_batch(X=X.T).T
-        return X.mean(axis=0), observation.unknowns.site_deviation(np.cov(X.T))
+        return X.mean(axis=0), observation.unknowns.site_std(np.cov(X.T))
 
     def _ours(
         self, observation: Observation, start: Gaussian, seed: int
     ) -> tuple[FloatArray, float]:
         """Return the same of one attempt of ours."""
-        *_, last = rounds(observation, start, [seed, 0], RoundSettings())
-        answer = polish(observation, last.distribution)
-        return answer.mean, observation.unknowns.site_deviation(answer.covariance)
+        *_, last = regression_rounds(observation, start, [seed, 0], RoundSettings())
+        answer = gauss_newton(observation, last.distribution)
+        return answer.mean, observation.unknowns.site_std(answer.covariance)

@@ -3,8 +3,8 @@
 At a wire of the disorder model the derivatives of all conductances with respect to the unknowns
 give the information that data with a certain noise hold. In units of the prior it has one
 eigenvalue for each independent combination; where it is above one, the data tell more of that
-combination than was known before. The posterior's deviation of V follows from the same matrix: an
-answer that is unique in this sense may still have others far away.
+combination than was known before. The posterior's standard deviation of V follows from the same
+matrix: an answer that is unique in this sense may still have others far away.
 """
 
 from __future__ import annotations
@@ -18,10 +18,11 @@ from pydantic import Field
 
 from disorder_landscape.config import DatasetConfig, Positive
 from disorder_landscape.dataset.realizations import realization
-from disorder_landscape.inference.measurement import empty_measurement
-from disorder_landscape.inference.observation import Observation, noise_of_channels
-from disorder_landscape.inference.polish import linearise
-from disorder_landscape.inference.unknowns import Gaussian, Unknowns
+from disorder_landscape.inference.problem.gaussian import Gaussian
+from disorder_landscape.inference.problem.measurement import empty_measurement
+from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
+from disorder_landscape.inference.problem.unknowns import Unknowns
+from disorder_landscape.inference.search.gauss_newton import linearise
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.studies.study import Part, Place, Plan
 
@@ -118,8 +119,8 @@ def information_rows(setting: Setting, noises: Iterable[float]) -> list[dict[str
                 "noise": noise,
                 "unknowns": truth.size,
                 "fixed": int((eigenvalues > 1).sum()),
-                "spread": round(unknowns.site_deviation(posterior), 7),
-                "prior_spread": round(unknowns.site_deviation(prior), 7),
+                "spread": round(unknowns.site_std(posterior), 7),
+                "prior_spread": round(unknowns.site_std(prior), 7),
             }
         )
     return rows

@@ -15,10 +15,14 @@ import numpy as np
 
 from disorder_landscape.config import Positive
 from disorder_landscape.dataset.realizations import realization
-from disorder_landscape.inference.measurement import Measurement, empty_measurement, simulated
-from disorder_landscape.inference.observation import Observation, noise_of_channels
-from disorder_landscape.inference.posterior import predictive_p
-from disorder_landscape.inference.unknowns import Unknowns
+from disorder_landscape.inference.problem.measurement import (
+    Measurement,
+    empty_measurement,
+    simulated,
+)
+from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
+from disorder_landscape.inference.problem.unknowns import Unknowns
+from disorder_landscape.inference.verification.predictive import predictive_p
 from disorder_landscape.model.parameters import FloatArray, Nanowire
 from disorder_landscape.studies.fresh_wires import (
     SEED,
@@ -74,7 +78,7 @@ class UnmodelledPlan(Plan):
     """Inversions of fresh wires of which one thing is other than the model has it."""
 
     kind: Literal["unmodelled"]
-    members: Positive
+    samples: Positive
     """Of the answer, which predict the measurements at other barriers."""
     every: Positive
     """Of the points of μ and B, how many those measurements are apart."""
@@ -95,7 +99,7 @@ class UnmodelledPlan(Plan):
 
     def rows(self, task: Task, place: Place) -> list[dict[str, object]]:
         """Invert the measurement of a wire that is not as the model has it."""
-        return [unmodelled_row(task, self.members, self.every)]
+        return [unmodelled_row(task, self.samples, self.every)]
 
 
 def changed(
@@ -129,13 +133,13 @@ def true_conductances(task: Task, wire: Nanowire, settings: Measurement) -> Floa
     return simulated(*changed(task.kind, task.index, wire, settings))
 
 
-def unmodelled_row(task: Task, members: int, every: int) -> dict[str, object]:
+def unmodelled_row(task: Task, samples: int, every: int) -> dict[str, object]:
     """Invert the measurement, check the answer, and compare it with the truth.
 
     Parameters
     ----------
     task : Task
-    members, every : int
+    samples, every : int
         As in `UnmodelledPlan`.
 
     Returns
@@ -164,7 +168,7 @@ def unmodelled_row(task: Task, members: int, every: int) -> dict[str, object]:
         measured(other_settings, other_G, task.noise, task.index, 3), unknowns, noise
     )
     rng = np.random.default_rng([SEED, task.index, 4])
-    predicted = further.simulate(found.chosen.draw(rng, members))
+    predicted = further.simulate(found.chosen.draw(rng, samples))
     return rounded(
         {
             "model": task.model,

@@ -19,7 +19,7 @@ from pydantic import Field
 
 from disorder_landscape.chain import FIVE, SHIPPED, preset_run, read_test_set
 from disorder_landscape.config import DatasetConfig, Positive
-from disorder_landscape.inference.verification import verify
+from disorder_landscape.inference.verify import verify
 from disorder_landscape.learning.prediction import predict
 from disorder_landscape.model.disorder import MEAN_STD
 from disorder_landscape.model.parameters import Nanowire

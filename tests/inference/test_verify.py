@@ -9,8 +9,8 @@ import xarray as xr
 import disorder_landscape as dl
 from disorder_landscape import ArgumentError, Nanowire, conductance
 from disorder_landscape.config import DatasetConfig, WireConfig
-from disorder_landscape.inference.comparison import scores, table
-from disorder_landscape.inference.verification import control_wires
+from disorder_landscape.inference.verification.comparison import scores, table
+from disorder_landscape.inference.verify import control_wires
 from disorder_landscape.model.disorder import cosine_components
 from disorder_landscape.model.quantities import CONDUCTANCES
 
@@ -50,8 +50,8 @@ def test_the_truth_passes_at_settings_of_every_kind():
         measure(TRUE, barrier=(20.0, 5.0)),
         measure(TRUE, theta=0.5, mu=0.1, B=0.5),
     ]
-    told = []
-    result = verify(prediction_of(TRUE), *measured, progress=lambda *pair: told.append(pair))
+    calls = []
+    result = verify(prediction_of(TRUE), *measured, progress=lambda *pair: calls.append(pair))
     assert result["mismatch"].dims == ("measurement", "channel")
     assert result["control_mismatch"].shape == (CONTROLS, 3, 4)
     assert result["p_value"] == pytest.approx(1 / (1 + CONTROLS))
@@ -60,7 +60,7 @@ def test_the_truth_passes_at_settings_of_every_kind():
     np.testing.assert_allclose(
         result["ratio"], result["mismatch"] / result["control_mismatch"].median("control")
     )
-    done, in_all = (list(numbers) for numbers in zip(*told, strict=True))
+    done, in_all = (list(numbers) for numbers in zip(*calls, strict=True))
     assert sum(done) == in_all[0] == in_all[-1] == (1 + CONTROLS) * (2 * (13 + 9) * 4 + 1)
 
 
@@ -161,8 +161,8 @@ def test_the_table_says_it_all():
     result = verify(prediction_of(TRUE), measure(TRUE), measure(TRUE, barrier=(9.0, 3.0)))
     lines = table(result.assign_coords(measurement=["first.nc", "second.nc"]))
     text = "\n".join(lines)
-    for word in ("first.nc", "second.nc", *CONDUCTANCES, "mean of V", result.attrs["verdict"]):
-        assert word in text
+    for text_of in ("first.nc", "second.nc", *CONDUCTANCES, "mean of V", result.attrs["verdict"]):
+        assert text_of in text
     assert len(lines) == 1 + 8 + 2
     assert max(len(line) for line in lines[:-1]) <= 100
 
@@ -222,11 +222,11 @@ def test_a_wire_of_another_length_is_a_prediction_like_any_other():
 
 
 def inversion_of(wire, apart):
-    """What `infer` would return: members whose V and α are off by these."""
+    """Return what `infer` would: samples whose V and α are off by these."""
     one = prediction_of(wire, shift=wire.potential.mean())
-    off = xr.DataArray(apart, dims="member")
+    off = xr.DataArray(apart, dims="sample")
     return one.assign(
-        potential=(one["potential"] + off).transpose("member", "site"),
+        potential=(one["potential"] + off).transpose("sample", "site"),
         potential_mean=one["potential"],
         alpha=wire.alpha + off,
         alpha_mean=wire.alpha,
@@ -239,26 +239,36 @@ def test_what_an_inversion_has_found_is_judged_by_its_mean():
     assert verify(found, measured, shifts=[0.0])["mismatch"].max() < 1e-9
 
 
+def test_a_result_of_an_older_version_is_refused_in_one_sentence():
+    """Its dim was member, and its error bars had other names."""
+    old = inversion_of(TRUE, np.zeros(60)).rename(sample="member")
+    message = r"^Argument prediction must have the dim sample, .*, but .*: run infer again\.$"
+    with pytest.raises(ArgumentError, match=message):
+        verify(old, measure(TRUE))
+
+
 @pytest.mark.parametrize("barrier", [(15.0, 15.0), (12.0, 30.0)])
-def test_members_of_an_inversion_make_the_data_or_not(barrier):
+def test_samples_of_an_inversion_make_the_data_or_not(barrier):
     """Error bars in meV that hold the truth, and others that do not, as the verdict says."""
     noise, bar = 0.01, 1e-3
     apart = bar * np.random.default_rng(3).normal(size=60)
     measured = measure(TRUE, barrier=barrier, noise=noise)
     options = {"noise": noise, "shifts": [0.0]}
-    told = []
+    calls = []
     right = verify(
-        inversion_of(TRUE, apart), measured, progress=lambda *pair: told.append(pair), **options
+        inversion_of(TRUE, apart), measured, progress=lambda *pair: calls.append(pair), **options
     )
-    assert right["p_members"] > 0.05
+    assert right["p_samples"] > 0.05
     pairs = measured.sizes["mu"] * measured.sizes["B"]
-    done, in_all = (list(numbers) for numbers in zip(*told, strict=True))
+    done, in_all = (list(numbers) for numbers in zip(*calls, strict=True))
     assert sum(done) == in_all[0] == in_all[-1] == (1 + CONTROLS + apart.size) * pairs
     shifted = replace(TRUE, potential=TRUE.potential + 20 * bar)
     wrong = verify(inversion_of(shifted, apart), measured, **options)
-    assert wrong["p_members"] < 0.02
+    assert wrong["p_samples"] < 0.02
     assert wrong["p_value"] < 0.06  # far better than wrong disorder, even so
     few = verify(inversion_of(TRUE, apart[:9]), measured, **options)
     results = (right, wrong, few)
-    for result, says in zip(results, ("inversion make", "do not make", "cannot say"), strict=True):
+    for result, says in zip(
+        results, ("posterior predicts", "does not predict", "cannot say"), strict=True
+    ):
         assert says in table(result.assign_coords(measurement=["a"]))[-1]

@@ -1,4 +1,4 @@
-"""Members of posteriors that are known: of lines, and of two valleys."""
+"""Samples of posteriors that are known: of lines, and of two valleys."""
 
 from dataclasses import replace
 
@@ -7,9 +7,16 @@ import pytest
 
 from disorder_landscape.inference.attempt import Attempt
 from disorder_landscape.inference.checkpoint import Checkpoint
-from disorder_landscape.inference.inversion import judged
-from disorder_landscape.inference.population import WORTH, Population, population, tamed, widened
-from disorder_landscape.inference.unknowns import Gaussian, Unknowns
+from disorder_landscape.inference.invert import with_importance_samples
+from disorder_landscape.inference.posterior.importance_sampling import (
+    ENOUGH,
+    ImportanceSamples,
+    importance_sampling,
+    tempered,
+    widened,
+)
+from disorder_landscape.inference.problem.gaussian import Gaussian
+from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED, verdict
 from linear_data import CONFIG, DATA, SIZE, UNKNOWNS, Linear, posterior
 
@@ -21,7 +28,7 @@ ONE = np.ones(DATA)
 
 
 class Folds(Linear):
-    """Data that do not tell on which side of the prior's mean the unknowns are."""
+    """Data that do not depend on which side of the prior's mean the unknowns are."""
 
     def simulate(self, X):
         return super().simulate(X - PRIOR.mean) ** 2
@@ -32,21 +39,21 @@ def lines():
     return Linear((PRIOR.mean + RNG.normal(size=SIZE) * WIDTH) @ SLOPE, SLOPE, variance=ONE)
 
 
-def test_members_have_the_posteriors_moments(lines):
+def test_samples_have_the_posteriors_moments(lines):
     exact = posterior(lines)
     scale = np.sqrt(np.diag(exact.covariance))
     far = Gaussian(exact.mean + 3 * scale, 9 * exact.covariance)
     steps = []
-    found = population(lines, [far], [0], told=lambda *step: steps.append(step))
+    found = importance_sampling(lines, [far], [0], progress=lambda *step: steps.append(step))
     assert [number for number, _, _ in steps] == list(range(len(steps)))
-    assert found.worth >= WORTH
-    assert found.members.shape == (128 * len(steps), SIZE)
+    assert found.effective_sample_size >= ENOUGH
+    assert found.samples.shape == (128 * len(steps), SIZE)
     assert abs((found.moments.mean - exact.mean) / scale).max() < 0.3
     ratio = np.linalg.eigvals(np.linalg.solve(exact.covariance, found.moments.covariance))
     assert 0.5 < ratio.real.min() <= ratio.real.max() < 1.7
 
 
-def test_populations_are_not_too_narrow():
+def test_importance_samples_are_not_too_narrow():
     """All directions at once, if their Mahalanobis distances are Hotelling's, on average."""
     ten = Unknowns(CONFIG.model_copy(update={"components": 10}))
     size = len(ten.names)
@@ -57,8 +64,8 @@ def test_populations_are_not_too_narrow():
     too_wide = Gaussian(exact.mean, 1.4**2 * exact.covariance)
     ratio = []
     for seed in range(40):
-        found = population(many, [too_wide, widened(exact)], [seed])
-        n, off = found.worth, found.moments.mean - exact.mean
+        found = importance_sampling(many, [too_wide, widened(exact)], [seed])
+        n, off = found.effective_sample_size, found.moments.mean - exact.mean
         second_moment = exact.covariance + np.outer(off, off)
         square = np.trace(np.linalg.solve(found.moments.covariance, second_moment))
         ratio.append(square / (size * (n + 1) / (n - size - 2)))
@@ -69,8 +76,8 @@ def test_both_valleys_have_their_share():
     truth = PRIOR.mean + 1.5 * WIDTH
     folds = Folds(((truth - PRIOR.mean) @ SLOPE) ** 2, SLOPE, variance=4 * ONE)
     about = [Gaussian(at, 0.05 * PRIOR.covariance) for at in (truth, 2 * PRIOR.mean - truth)]
-    found = population(folds, about, [0])
-    side = (found.members - PRIOR.mean) @ (truth - PRIOR.mean) > 0
+    found = importance_sampling(folds, about, [0])
+    side = (found.samples - PRIOR.mean) @ (truth - PRIOR.mean) > 0
     assert 0.35 < found.weight[side].sum() < 0.65
     assert found.moments.squared_distance(truth) < 3 * SIZE
     drawn = found.draw(np.random.default_rng(0), 1000)
@@ -78,37 +85,37 @@ def test_both_valleys_have_their_share():
     assert 0.35 < side.mean() < 0.65
 
 
-def test_weights_are_tamed_no_more_than_asked():
+def test_weights_are_tempered_no_more_than_needed():
     X, log_weight = RNG.normal(size=(500, SIZE)), 30 * RNG.normal(size=500)
-    tame = tamed(X, log_weight, 100.0)
-    assert tame.worth == pytest.approx(100.0)
-    assert 0 < tame.power < 1
-    np.testing.assert_array_equal(np.argsort(tame.weight), np.argsort(log_weight))
-    assert tamed(X, 0.01 * log_weight, 100.0).worth > 100
+    found = tempered(X, log_weight, 100.0)
+    assert found.effective_sample_size == pytest.approx(100.0)
+    assert 0 < found.power < 1
+    np.testing.assert_array_equal(np.argsort(found.weight), np.argsort(log_weight))
+    assert tempered(X, 0.01 * log_weight, 100.0).effective_sample_size > 100
 
 
-def test_members_are_enough_that_are_worth_it():
+def test_samples_are_enough_by_their_effective_size():
     """As many as are needed for each unknown, and of the posterior itself."""
-    even = Population(np.zeros((500, SIZE)), np.full(500, 1 / 500))
-    assert even.worth == pytest.approx(500)
+    even = ImportanceSamples(np.zeros((500, SIZE)), np.full(500, 1 / 500))
+    assert even.effective_sample_size == pytest.approx(500)
     assert even.is_enough
     assert not replace(even, power=0.9).is_enough
-    assert not replace(even, members=np.zeros((500, 50))).is_enough
+    assert not replace(even, samples=np.zeros((500, 50))).is_enough
     one = np.full(500, 0.1 / 499)
     one[0] = 0.9
     assert not replace(even, weight=one).is_enough
 
 
-def test_members_are_drawn_as_often_as_they_weigh():
+def test_samples_are_drawn_as_often_as_they_weigh():
     X = np.arange(4.0)[:, None]
-    drawn = Population(X, np.array([0.5, 0.25, 0.25, 0.0])).draw(RNG, 400)
+    drawn = ImportanceSamples(X, np.array([0.5, 0.25, 0.25, 0.0])).draw(RNG, 400)
     np.testing.assert_array_equal(np.bincount(drawn[:, 0].astype(int)), [200, 100, 100])
 
 
-def test_an_interrupted_population_goes_on(lines, tmp_path):
+def test_interrupted_importance_sampling_goes_on(lines, tmp_path):
     start = Gaussian(PRIOR.mean, PRIOR.covariance)
     path = tmp_path / "unfinished.json"
-    first = population(lines, [start], [0], Checkpoint(path).recall)
+    first = importance_sampling(lines, [start], [0], Checkpoint(path).cached)
     again = Checkpoint(path)
     assert len(again) > 0
 
@@ -117,29 +124,29 @@ def test_an_interrupted_population_goes_on(lines, tmp_path):
 
     unavailable = replace(lines)
     unavailable.simulate = fail
-    second = population(unavailable, [start], [0], again.recall)
+    second = importance_sampling(unavailable, [start], [0], again.cached)
     np.testing.assert_array_equal(first.weight, second.weight)
-    np.testing.assert_array_equal(first.members, second.members)
+    np.testing.assert_array_equal(first.samples, second.samples)
 
 
 @pytest.mark.parametrize(("width", "wide"), [(1e-3, False), (1.2e-3, True), (0.02, True)])
-def test_answers_wider_than_conductances_are_straight_are_populations(lines, width, wide):
+def test_answers_wider_than_conductances_are_linear_get_importance_samples(lines, width, wide):
     """At 50 mK a quarter of kT is 1.1 µeV."""
     exact = posterior(lines)
-    narrow = exact.covariance * (width / UNKNOWNS.site_deviation(exact.covariance)) ** 2
+    narrow = exact.covariance * (width / UNKNOWNS.site_std(exact.covariance)) ** 2
     answer = Gaussian(exact.mean, narrow)
     one = Attempt(exact, answer, lines.simulate(answer.mean[None])[0], 0.0, 0.0, 1)
-    attempts = judged(lines, [one, replace(one, objective=1.0)], [0])
+    attempts = with_importance_samples(lines, [one, replace(one, objective=1.0)], [0])
     assert verdict(lines, attempts) == CONVERGED
-    assert (attempts[0].population is not None) == wide
-    deviation = UNKNOWNS.site_deviation(attempts[0].answer.covariance)
-    expected = UNKNOWNS.site_deviation(exact.covariance) if wide else width
-    assert deviation == pytest.approx(expected, rel=0.2)
-    assert attempts[1].population is None
+    assert (attempts[0].importance_samples is not None) == wide
+    bar = UNKNOWNS.site_std(attempts[0].answer.covariance)
+    expected = UNKNOWNS.site_std(exact.covariance) if wide else width
+    assert bar == pytest.approx(expected, rel=0.2)
+    assert attempts[1].importance_samples is None
     if wide:
-        tamed_only = replace(attempts[0].population, power=0.5)
-        doubtful = [replace(attempts[0], population=tamed_only), attempts[1]]
+        tempered_only = replace(attempts[0].importance_samples, power=0.5)
+        doubtful = [replace(attempts[0], importance_samples=tempered_only), attempts[1]]
         assert verdict(lines, doubtful) == NOT_CONVERGED
         np.testing.assert_array_equal(attempts[0].data, one.data)  # of the most probable wire
     poor = Attempt(exact, answer, one.data, 0.0, 9.0, 1)
-    assert judged(lines, [poor], [0]) == [poor]  # what does not fit stays as it is
+    assert with_importance_samples(lines, [poor], [0]) == [poor]  # what does not fit stays as it is

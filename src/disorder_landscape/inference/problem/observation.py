@@ -1,4 +1,4 @@
-"""The data that an inversion explains: what was measured, with which errors, and its simulation."""
+"""The data that an inversion explains, their errors, their simulation, and the likelihood."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from disorder_landscape.arguments import number_in, require
-from disorder_landscape.inference.measurement import Measurement, simulated
-from disorder_landscape.inference.unknowns import Unknowns
+from disorder_landscape.inference.problem.measurement import Measurement, simulated
+from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.learning.scaling import NOISE_FLOOR
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.model.quantities import CONDUCTANCES
 from disorder_landscape.solver import compiled
 
 SOLVER_ERROR = compiled.core.TOLERANCE
-"""In e²/h: what the simulation is exact to, below which no noise can be told from none."""
+"""In e²/h: the error of the simulation. Smaller noise makes no difference."""
 FEW = 7
-"""Lines of a grid of which none is left out."""
+"""Grids of so many lines or fewer stay whole."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,20 +41,20 @@ class Observation:
     noise: FloatArray
 
     @property
-    def there(self) -> NDArray[np.bool_]:
+    def is_measured(self) -> NDArray[np.bool_]:
         """Which conductances were measured, shape (mu, B, bias, channel)."""
         return np.isfinite(self.measurement.G)
 
     @property
     def data(self) -> FloatArray:
         """In e²/h, shape (datum,)."""
-        return np.asarray(self.measurement.G[self.there])
+        return np.asarray(self.measurement.G[self.is_measured])
 
     @property
     def channel(self) -> NDArray[np.int64]:
         """Which channel each datum is of, shape (datum,)."""
         channel = np.broadcast_to(np.arange(len(CONDUCTANCES)), self.measurement.G.shape)
-        return np.asarray(channel[self.there])
+        return np.asarray(channel[self.is_measured])
 
     @property
     def variance(self) -> FloatArray:
@@ -62,13 +62,13 @@ class Observation:
         return np.asarray(errors_variance(self.noise)[self.channel])
 
     def simulate(self, X: FloatArray) -> FloatArray:
-        """Return the data of members (member, unknown), shape (member, datum)."""
-        return np.asarray(self.conductances(X)[:, self.there])
+        """Return simulated data of samples X (sample, unknown), shape (sample, datum)."""
+        return np.asarray(self.conductances(X)[:, self.is_measured])
 
     def on_some_lines(self, share: float, rng: np.random.Generator) -> Observation:
         """Return an observation of random lines of μ and B, which hold this share of the data.
 
-        Grids of up to FEW lines stay whole, and those with lines that lack data.
+        Grids of up to FEW lines stay whole, and those where too many data are missing.
         """
         m = self.measurement
         mu, B = (
@@ -87,7 +87,7 @@ class Observation:
         return replace(self, measurement=some)
 
     def conductances(self, X: FloatArray) -> FloatArray:
-        """Return conductances of members in e²/h, shape (member, mu, B, bias, channel)."""
+        """Return conductances of samples in e²/h, shape (sample, mu, B, bias, channel)."""
         return simulated(self.unknowns.wires(X, self.measurement.barrier), self.measurement)
 
     def misfit(self, y: FloatArray) -> FloatArray:
@@ -100,7 +100,7 @@ class Observation:
 
 
 def errors_variance(noise: ArrayLike) -> FloatArray:
-    """Return the variance of measured errors and the solver's own in (e²/h)², of noise in e²/h."""
+    """Return the variance in (e²/h)² of noise, in e²/h, and of the solver's own error together."""
     return np.asarray(noise) ** 2 + SOLVER_ERROR**2
 
 
@@ -110,18 +110,18 @@ def overall_misfit(observation: Observation, y: FloatArray) -> float:
 
 
 def squared_misfits(observation: Observation, Y: FloatArray) -> FloatArray:
-    """Return those of simulated data (…, datum) in units of the errors' variance, same shape."""
+    """Return squared misfits of simulated data (…, datum) in units of the errors' variance."""
     return np.asarray((Y - observation.data) ** 2 / observation.variance)
 
 
 def objective(observation: Observation, X: FloatArray, Y: FloatArray) -> FloatArray:
-    """Return −2 log of the posterior density of members X (…, unknown), up to a constant.
+    """Return −2 log of the posterior density of samples X (…, unknown), up to a constant.
 
     Parameters
     ----------
     observation : Observation
     X, Y : array, shapes (…, unknown) and (…, datum)
-        Members and what they show.
+        Samples, and their simulated data.
     """
     likelihood = squared_misfits(observation, Y).sum(axis=-1)
     return np.asarray(likelihood + observation.unknowns.prior.squared_distance(X))
@@ -131,13 +131,13 @@ def stated_noise(attrs: Mapping[Any, Any], usual: float = NOISE_FLOOR) -> float 
     """Return the noise that a measurement states: one number, one of each channel, or the usual."""
     noise = np.atleast_1d(attrs.get("noise", usual)).tolist()
     must = f"be one number in e²/h, or one for each of {', '.join(CONDUCTANCES)}"
-    there = len(noise) in (1, len(CONDUCTANCES))
-    require(there, "noise", must, f"the measurement states {len(noise)}")
+    one_or_all = len(noise) in (1, len(CONDUCTANCES))
+    require(one_or_all, "noise", must, f"the measurement states {len(noise)}")
     return one_or_each(noise)
 
 
 def one_or_each(noise: list[float]) -> float | dict[str, float]:
-    """Return what a list of one number, or of one for each channel, stands for."""
+    """Return one number, or one by the name of each channel, from a list of them."""
     return noise[0] if len(noise) == 1 else dict(zip(CONDUCTANCES, noise, strict=True))
 
 

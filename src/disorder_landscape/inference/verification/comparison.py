@@ -1,4 +1,4 @@
-"""What the mismatches of a prediction and of wrong disorder say."""
+"""Scores and p-values from the mismatches of a prediction and of wrong disorder."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from disorder_landscape.model.quantities import CONDUCTANCES
 SIGNIFICANCE = 0.05
 """Largest p-value of a prediction that passes."""
 UNLIKELY = 0.02
-"""Further data are no longer an inversion's if its members make such with no more probability."""
-LEAST_MEMBERS = round(1 / UNLIKELY) - 1
-"""So many can tell that."""
+"""Largest predictive p-value at which further data contradict an inversion."""
+LEAST_SAMPLES = round(1 / UNLIKELY) - 1
+"""Of fewer samples no p-value is so small."""
 LEAST_SIGNAL = 0.5
-"""Part of the mismatch of wrong disorder that must not be noise in one channel at least."""
+"""Share of the mismatch of wrong disorder that must not be noise, in one channel at least."""
 _TINY = np.finfo(float).tiny
 
 
 def weights(typical: FloatArray, noise: FloatArray) -> FloatArray:
-    """Return which part of typical mismatches is not noise, shape (measurement, channel)."""
+    """Return the share of typical mismatches that is not noise, shape (measurement, channel)."""
     return np.asarray(np.clip(1 - (noise / np.maximum(typical, _TINY)) ** 2, 0.0, 1.0))
 
 
@@ -46,7 +46,7 @@ def scores(squares: FloatArray, typical: FloatArray, noise: FloatArray) -> Float
 
 
 def comparison(mismatch: FloatArray, shift: FloatArray, noise: FloatArray) -> xr.Dataset:
-    """Return what `verify` does, from mismatches (wire, measurement, channel) and shifts (wire,).
+    """Return `verify`'s result from mismatches (wire, measurement, channel) and shifts (wire,).
 
     The first wire is the predicted one, the others are controls; noise has the shape (measurement,
     channel).
@@ -81,16 +81,18 @@ def _verdict(score: float, as_close: int, controls: int, p: float) -> str:
     )
 
 
-def of_members(p: float) -> str:
-    """Return what `predictive_p` of an inversion's members says; NaN is that of too few."""
+def of_samples(p: float) -> str:
+    """Return what `predictive_p` of an inversion's samples means; NaN is that of too few."""
     if np.isnan(p):
-        return f"Fewer than {LEAST_MEMBERS} members cannot say whether they make such data."
-    but = "do not make such data: its error bars, its model or the noise that is stated is wrong"
-    return f"Members of the inversion {'make such data' if p > UNLIKELY else but} (p = {p:.2g})."
+        return f"Fewer than {LEAST_SAMPLES} samples cannot say if the posterior predicts the data."
+    but = "does not predict these data: its error bars, its model or the stated noise is wrong"
+    return (
+        f"The posterior {'predicts these data' if p > UNLIKELY else but} (predictive p = {p:.2g})."
+    )
 
 
 def table(result: xr.Dataset) -> list[str]:
-    """Return the lines of a table of what `verify` has found, in e²/h, and its verdict."""
+    """Return the lines of a table of the result of `verify`, in e²/h, and its verdict."""
     lines = [
         f"{'measurement':30} channel  mismatch  wrong disorder: median  smallest   ratio",
     ]
@@ -106,6 +108,6 @@ def table(result: xr.Dataset) -> list[str]:
     noise = ", ".join(f"{one:g}" for one in np.unique(result["noise"]))
     lines.append(f"mean of V that fits best: {shift:g} µeV; noise: {noise} e²/h")
     lines.append(str(result.attrs["verdict"]))
-    if "p_members" in result:
-        lines.append(of_members(float(result["p_members"])))
+    if "p_samples" in result:
+        lines.append(of_samples(float(result["p_samples"])))
     return lines

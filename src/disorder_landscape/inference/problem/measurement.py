@@ -20,13 +20,13 @@ from disorder_landscape.observables.conductance import conductance
 QUANTUM = e**2 / h
 """e²/h in S."""
 QUANTA = ("", "e^2/h", "e²/h", "e**2/h", "e2/h")
-"""What conductances may be in, where they say so."""
+"""Units that conductances may state."""
 LARGEST = 10.0
 """In e²/h: no conductance of a wire with one subband is above 4."""
 FIXED = ("mass", "lattice", "g", "gamma", "delta0", "dissipation")
 """Parameters of `Nanowire` that all wires of this program's models have in common."""
 AXIS_UNITS = {"mu": ("meV",), "B": ("T", "tesla"), "bias": ("meV", "mV")}
-"""What axes may be in, where they say so."""
+"""Units that axes may state."""
 IN_QUANTA = f"be in e²/h, which is {QUANTUM:.4g} S, by which conductances in S are divided"
 SETTINGS = ("theta", "barrier", "temperature")
 """Attributes that a measurement must have: in radians, in meV (left, right), in K."""
@@ -95,8 +95,8 @@ def measurement_of(
         If it lacks a variable, a dim or an attribute, has several wires, holds NaN or infinity, is
         in other units, or states that the wire is another than the models'.
     """
-    there = isinstance(dataset, xr.Dataset)
-    require(there, "measurement", "be a Dataset", f"it is {type(dataset).__name__!r}")
+    is_dataset = isinstance(dataset, xr.Dataset)
+    require(is_dataset, "measurement", "be a Dataset", f"it is {type(dataset).__name__!r}")
     must = "hold the conductances of one wire over mu, B and bias"
     given = [name for name in CONDUCTANCES if name in dataset.variables]
     missing = [name for name in (*CONDUCTANCES, *AXES) if name not in dataset.variables]
@@ -123,7 +123,7 @@ def measurement_of(
 
 
 def _check_wire(attrs: Mapping[Any, object]) -> None:
-    """Require that what a measurement states of its wire is what all models take for granted."""
+    """Require that a measurement states the values of FIXED, where it states any."""
     for name in FIXED:
         usual = getattr(Nanowire, name)
         stated = number_in(name, attrs.get(name, usual), *PARAMETER_RANGES[name])

@@ -13,20 +13,24 @@ from disorder_landscape import ArgumentError, Nanowire, conductance
 from disorder_landscape.chain import FIVE, shipped_model
 from disorder_landscape.config import Config, DatasetConfig, TrainingConfig
 from disorder_landscape.dataset.realizations import realization
-from disorder_landscape.inference.first_guess import network_guess
-from disorder_landscape.inference.inversion import InversionSettings
-from disorder_landscape.inference.measurement import measurement_of, settings_of
-from disorder_landscape.inference.observation import Observation, noise_of_channels, stated_noise
+from disorder_landscape.inference.invert import InversionSettings
+from disorder_landscape.inference.problem.measurement import measurement_of, settings_of
+from disorder_landscape.inference.problem.observation import (
+    Observation,
+    noise_of_channels,
+    stated_noise,
+)
+from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.report import (
     noise_hint,
     parse_noise,
     stated_noise_hint,
     summary,
 )
-from disorder_landscape.inference.rounds import RoundSettings
-from disorder_landscape.inference.unknowns import Unknowns
+from disorder_landscape.inference.search.first_guess import network_guess
+from disorder_landscape.inference.search.network_features import network_features
+from disorder_landscape.inference.search.regression_rounds import RoundSettings
 from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED, NOT_DESCRIBED
-from disorder_landscape.inference.word import word_on
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.learning.scaling import LabelScaler
 from disorder_landscape.model.quantities import CONDUCTANCES
@@ -80,26 +84,26 @@ def inferred(measured):
 
 def test_the_disorder_is_found_within_its_error_bars(inferred):
     assert inferred.attrs["verdict"] == CONVERGED
-    spread = float(np.sqrt((inferred["potential_deviation"] ** 2).mean()))
+    spread = float(np.sqrt((inferred["potential_std"] ** 2).mean()))
     assert spread < 0.005
     assert site_error(inferred) < 3 * spread
-    assert abs(inferred["alpha_mean"] - TRUE.alpha) < 4 * inferred["alpha_deviation"]
+    assert abs(inferred["alpha_mean"] - TRUE.alpha) < 4 * inferred["alpha_std"]
     off = abs(inferred["components_mean"] - TRUE.components)
-    assert np.all(off < 4 * inferred["components_deviation"])
+    assert np.all(off < 4 * inferred["components_std"])
     np.testing.assert_allclose(inferred["misfit"], NOISE, rtol=0.25)
 
 
-def test_the_members_are_what_the_result_says_of_them(inferred):
+def test_the_samples_are_what_the_result_says_of_them(inferred):
     V = inferred["potential"]
-    assert V.dims == ("member", "site")
-    assert V.sizes == {"member": 64, "site": 100}
-    for name, members in inferred[["potential", "components", "alpha"]].items():
-        mean, deviation = inferred[f"{name}_mean"], inferred[f"{name}_deviation"]
-        np.testing.assert_allclose(members.mean("member"), mean, atol=1e-12)
-        np.testing.assert_allclose(members.std("member"), deviation, rtol=0.4)
-    member = Nanowire(V[5].to_numpy(), alpha=float(inferred["alpha"][5]))
+    assert V.dims == ("sample", "site")
+    assert V.sizes == {"sample": 64, "site": 100}
+    for name, samples in inferred[["potential", "components", "alpha"]].items():
+        mean, std = inferred[f"{name}_mean"], inferred[f"{name}_std"]
+        np.testing.assert_allclose(samples.mean("sample"), mean, atol=1e-12)
+        np.testing.assert_allclose(samples.std("sample"), std, rtol=0.4)
+    sample = Nanowire(V[5].to_numpy(), alpha=float(inferred["alpha"][5]))
     maps = inferred["map_mu"], inferred["map_B"]
-    T = dl.topological_visibility(member, *maps).isel(lead=0)
+    T = dl.topological_visibility(sample, *maps).isel(lead=0)
     certain = inferred["P_topological"].isin([0.0, 1.0]).to_numpy()
     assert certain.mean() > 0.9
     np.testing.assert_array_equal(
@@ -148,23 +152,23 @@ def test_what_it_explains_is_not(measured):
     assert infer(measured, settings=SOON).attrs["verdict"] == CONVERGED
 
 
-def test_much_noise_makes_the_answer_a_population(tmp_path):
-    """Interrupted while its members are drawn, it comes to the same."""
+def test_much_noise_takes_importance_sampling(tmp_path):
+    """Interrupted while its samples are drawn, it comes to the same."""
     noise, file = 0.05, tmp_path / "unfinished.json"
     noisy = measure(TRUE.wire, noise).isel(mu=[0, 3, 5], B=[1, 3, 5], bias=[1, 2])
 
     def interrupt(step):
-        if step.stage == "population":
+        if step.stage == "importance sampling":
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        infer(noisy, noise, checkpoint=file, told=interrupt)
+        infer(noisy, noise, checkpoint=file, progress=interrupt)
     result, again = infer(noisy, noise, checkpoint=file), infer(noisy, noise)
     xr.testing.assert_identical(result, again)
     assert result.attrs["verdict"] == CONVERGED
     assert result.attrs["attempts"] == 2
-    assert result.attrs["worth"] >= 150
-    spread = float(np.sqrt((result["potential_deviation"] ** 2).mean()))
+    assert result.attrs["effective_sample_size"] >= 150
+    spread = float(np.sqrt((result["potential_std"] ** 2).mean()))
     assert spread > 0.0043  # kT
     assert site_error(result) < 3 * spread
     np.testing.assert_allclose(result["misfit"], noise, rtol=0.5)
@@ -180,18 +184,32 @@ def test_an_interrupted_run_goes_on(measured, inferred, tmp_path):
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        infer(measured, checkpoint=checkpoint, told=interrupt)
+        infer(measured, checkpoint=checkpoint, progress=interrupt)
     other = infer(measured, noise=0.002, checkpoint=checkpoint)  # ignores what is another run's …
     assert other.identical(infer(measured, noise=0.002))
-    result = infer(measured, checkpoint=checkpoint, told=second.append)
+    result = infer(measured, checkpoint=checkpoint, progress=second.append)
     assert second[:3] == first  # … and leaves it there
     stages = [step.stage for step in second]
     assert stages.count("round") == inferred.attrs["rounds"]
-    assert stages[-1] == "polish"
+    assert stages[-1] == "Gauss–Newton"
     assert second[-1].misfit < 1.1 * NOISE
-    deviation = float(np.sqrt((inferred["potential_deviation"] ** 2).mean()))
-    assert second[-1].spread == pytest.approx(deviation, rel=0.1)
+    spread = float(np.sqrt((inferred["potential_std"] ** 2).mean()))
+    assert second[-1].spread == pytest.approx(spread, rel=0.1)
     assert result.identical(inferred)
+
+
+def test_a_checkpoint_of_an_older_version_is_ignored(measured, inferred, tmp_path):
+    """Its settings had other names, so that its fingerprint differs; it stays in the file."""
+    wide = {"mean": [0.0] * 4, "covariance": np.eye(4).tolist()}
+    old = {"polish.0": wide, "near.0.0.3": {"spread": 0.001}}
+    old["round.0.0.0"] = {"distribution": wide, "misfit": 1.0, "unexplained": 9.0, "spread": 0.1}
+    checkpoint = tmp_path / "unfinished.json"
+    checkpoint.write_text(json.dumps({64 * "0": old}))
+    assert infer(measured, checkpoint=checkpoint).identical(inferred)
+    runs = json.loads(checkpoint.read_text())
+    assert runs.pop(64 * "0") == old
+    (new,) = runs.values()
+    assert "gauss_newton.0" in new
 
 
 def test_a_run_with_another_network_starts_anew(measured, tmp_path):
@@ -202,7 +220,7 @@ def test_a_run_with_another_network_starts_anew(measured, tmp_path):
         if runs == 2:  # as after another training with the same configuration
             network.set_weights([2 * weights for weights in network.get_weights()])
         with pytest.raises(KeyboardInterrupt):
-            dl.infer(measured, model, NOISE, checkpoint=checkpoint, told=interrupt_at_once)
+            dl.infer(measured, model, NOISE, checkpoint=checkpoint, progress=interrupt_at_once)
         assert len(json.loads(checkpoint.read_text())) == runs
 
 
@@ -212,7 +230,7 @@ def test_the_seed_decides(measured, inferred):
     np.testing.assert_allclose(
         other["potential_mean"],
         inferred["potential_mean"],
-        atol=float(inferred["potential_deviation"].max()),
+        atol=float(inferred["potential_std"].max()),
     )
 
 
@@ -221,7 +239,7 @@ def test_the_seed_decides(measured, inferred):
     [
         (lambda G: G, {"noise": -0.1}, "noise must be a number from 0 to 1 e²/h, but it is -0.1"),
         (lambda G: G, {"noise": {"G_LL": 0.1}}, "noise must be one number, or one for each of"),
-        (lambda G: G, {"members": 3}, "members must be an even number"),
+        (lambda G: G, {"samples": 3}, "samples must be an even number"),
         (
             lambda G: G * 3.874e-5,
             {},
@@ -251,7 +269,7 @@ def test_the_seed_decides(measured, inferred):
         (lambda G: G + 0j, {}, "hold finite numbers, but it holds something else"),
         (lambda G: G.assign_attrs(noise=[0.1, 0.2]), {"noise": None}, "measurement states 2"),
         (lambda G: G, {"noise": True}, "noise must be a number .* it is True"),
-        (lambda G: G, {"members": 2.5}, "members must be a whole number"),
+        (lambda G: G, {"samples": 2.5}, "samples must be a whole number"),
     ],
 )
 def test_bad_input_is_refused_in_one_sentence(measured, change, options, message):
@@ -278,7 +296,7 @@ def test_the_network_guesses_if_nothing_is_missing_of_what_it_is_shown(measured,
         checkpoint = tmp_path / f"{missing}.json"
         G = measured.assign(G_LL=measured["G_LL"].where(measured["mu"] != measured["mu"][missing]))
         with pytest.raises(KeyboardInterrupt):
-            dl.infer(G, model, NOISE, checkpoint=checkpoint, told=interrupt_at_once)
+            dl.infer(G, model, NOISE, checkpoint=checkpoint, progress=interrupt_at_once)
         (notes,) = json.loads(checkpoint.read_text()).values()
         assert ("guess" in notes) == guessed
 
@@ -313,22 +331,22 @@ def test_the_network_is_shown_its_own_points_of_a_larger_grid():
         np.testing.assert_allclose(one, other, atol=1e-4)
 
 
-def test_a_network_of_few_points_has_its_word_on_each_wire():
+def test_a_network_of_few_points_makes_features_of_each_wire():
     model, larger = replace(MODEL, network=FirstNumbers()), {"mu_points": 11, "B_points": 16}
     G = measure(TRUE.wire, config=DATASET.model_copy(update=larger))
     whole = measurement_of(G, settings_of(DATASET))
     observation = Observation(whole, Unknowns(DATASET), np.full(4, NOISE))
-    assert word_on(None, observation, 0.25) is None
-    assert word_on(model, observation, 0.2) is None
-    word = word_on(model, observation, 0.25)
-    np.testing.assert_array_equal(word.seen.measurement.G, whole.G[::2, ::3])
-    np.testing.assert_allclose(word.on_data, whole.G[0, 0, 0, :3], atol=1e-6)
-    Y = np.zeros((200, word.seen.data.size))
-    labels = word.on_members(Y, np.random.default_rng(0))
+    assert network_features(None, observation, 0.25) is None
+    assert network_features(model, observation, 0.2) is None
+    features = network_features(model, observation, 0.25)
+    np.testing.assert_array_equal(features.on_grid.measurement.G, whole.G[::2, ::3])
+    np.testing.assert_allclose(features.features_of_data, whole.G[0, 0, 0, :3], atol=1e-6)
+    Y = np.zeros((200, features.on_grid.data.size))
+    labels = features.features_of_samples(Y, np.random.default_rng(0))
     np.testing.assert_allclose(labels.std(axis=0), NOISE, rtol=0.2)
 
     inferred = dl.infer(G, model, NOISE)
-    assert inferred.attrs["start"] == "the prior, with the network's word on each wire"
+    assert inferred.attrs["start"] == "the prior, with the network's output as further features"
     assert inferred.attrs["verdict"] == CONVERGED
     assert site_error(inferred) < 0.005
 
@@ -384,7 +402,7 @@ def test_noise_that_is_other_than_stated_is_noticed(misfit, says):
 def test_the_summary_says_it_all(inferred):
     failed = inferred.assign_attrs(verdict=NOT_DESCRIBED)
     assert "neither the error bars below" in summary(failed)[1]
-    known = summary(inferred.assign(alpha_mean=8.0, alpha_deviation=0.0))
+    known = summary(inferred.assign(alpha_mean=8.0, alpha_std=0.0))
     assert "alpha           8 meV nm, as in the model" in known
     lines = "\n".join(summary(inferred))
     assert "neither" not in lines

@@ -1,9 +1,10 @@
-"""The last micro-electronvolts: Gauss–Newton steps on the exact posterior, and Laplace's spread.
+"""The last micro-electronvolts: Gauss–Newton steps to the optimum of the posterior, and its width.
 
-The derivatives are central differences of the thermal averages along the principal axes of the
-present posterior, half a deviation to either side, and no less than is needed for the simulation's
-own error (of few conductances up to 10⁻⁴ e²/h) not to pass for a slope. (`conductance_gradient` has
-the derivatives at zero temperature, of peaks far narrower than kT, whose average would take
+The width is that of Laplace's approximation. The derivatives are central differences of the thermal
+averages along the principal axes of the present distribution. The differences are half a standard
+deviation to either side. They are no less than is needed for the simulation's own error (of few
+conductances up to 10⁻⁴ e²/h) not to pass for a slope. (`conductance_gradient` has the derivatives
+at zero temperature. These are of peaks far narrower than kT, and an average over them would take
 thousands of energies.)
 """
 
@@ -14,30 +15,31 @@ from dataclasses import replace
 
 import numpy as np
 
-from disorder_landscape.inference.observation import Observation, objective, overall_misfit
-from disorder_landscape.inference.unknowns import Gaussian, Unknowns
+from disorder_landscape.inference.problem.gaussian import Gaussian
+from disorder_landscape.inference.problem.observation import Observation, objective, overall_misfit
+from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.model.parameters import FloatArray
 
 DIFFERENCE = 0.5
-"""Step of the differences in deviations of the posterior, …"""
+"""Step of the differences, in standard deviations of the distribution, …"""
 LEAST_DIFFERENCE = 1e-4
 """… or, if that is more, in meV per site, root mean square: a fortieth of kT at 50 mK. (Five times
 as much changes error bars by a few percent, and so, now and then, does a fifth of it.)"""
 ALPHA_UNIT = 50.0
-"""Change of α in nm for that of V in meV that is as large to the conductances."""
+"""Change of α in meV nm that changes the conductances as much as 1 meV of V does."""
 STEPS = 12
 """At most."""
 DAMPING = 4.0, 1e-2, 1e6
 """Factor, first and largest value of Levenberg's and Marquardt's damping."""
 ENOUGH = 0.3
-"""Done when a step lowers −2 log(posterior) by less than this: by half a deviation, all unknowns
-together. That is about as much as the simulation's own error adds where the noise is 0.01 e²/h."""
+"""Steps end when one lowers −2 log(posterior) by less than this, which is half a standard deviation
+of all unknowns together. The simulation's own error adds about as much at a noise of 0.01 e²/h."""
 
 
-def polish(
+def gauss_newton(
     observation: Observation,
     start: Gaussian,
-    told: Callable[[int, float, float], None] = lambda number, misfit, spread: None,
+    progress: Callable[[int, float, float], None] = lambda number, misfit, spread: None,
 ) -> Gaussian:
     """Return the local optimum that damped Gauss–Newton steps lead to, with Laplace's covariance.
 
@@ -46,9 +48,9 @@ def polish(
     observation : Observation
     start : Gaussian
         Where to start, and how far the conductances are linear about it.
-    told : callable
-        Told the number of each step before it is made, the root-mean-square misfit in e²/h and the
-        deviation of V in meV.
+    progress : callable
+        Called before each step, with its number, the root-mean-square misfit in e²/h and the
+        standard deviation of V in meV.
     """
     prior, variance = observation.unknowns.prior, observation.variance
     precision = np.linalg.inv(prior.covariance)
@@ -58,28 +60,28 @@ def polish(
     for number in range(STEPS):
         information = precision_of(observation, slope)
         linear = Gaussian(x, np.asarray(np.linalg.inv(information), np.float64))
-        spread = observation.unknowns.site_deviation(linear.covariance)
-        told(number, overall_misfit(observation, y), spread)
+        spread = observation.unknowns.site_std(linear.covariance)
+        progress(number, overall_misfit(observation, y), spread)
         downhill = (slope / variance) @ (observation.data - y) - precision @ (x - prior.mean)
         while True:
             damped = information + damping * np.diag(np.diag(information))
             tried = x + np.linalg.solve(damped, downhill)
-            shown = observation.simulate(tried[None])[0]
-            found = objective(observation, tried, shown)
+            y_tried = observation.simulate(tried[None])[0]
+            found = objective(observation, tried, y_tried)
             if found < best or damping > largest:
                 break
             damping = max(first, factor**2 * damping)
         step = tried - x
         while found < best:  # a valley that bends: a line search costs next to nothing
             further = tried + step
-            shown_further = observation.simulate(further[None])[0]
-            found_further = objective(observation, further, shown_further)
+            y_further = observation.simulate(further[None])[0]
+            found_further = objective(observation, further, y_further)
             if found_further >= found:
                 break
-            tried, shown, found, step = further, shown_further, found_further, 2 * step
+            tried, y_tried, found, step = further, y_further, found_further, 2 * step
         gained = best - found
         if gained > 0:
-            x, y, best = tried, shown, found
+            x, y, best = tried, y_tried, found
         if gained < ENOUGH and number > 0:  # the first slopes are those of the start's width
             break
         slope = linearise(observation, replace(linear, mean=x))[1]
@@ -88,7 +90,7 @@ def polish(
 
 
 def laplace(observation: Observation, mean: FloatArray, slope: FloatArray) -> Gaussian:
-    """Return what the posterior about an optimum would be if data were linear."""
+    """Return Laplace's approximation: the posterior about an optimum if data were linear."""
     covariance = np.linalg.inv(precision_of(observation, slope))
     return Gaussian(mean, (covariance + covariance.T) / 2)
 

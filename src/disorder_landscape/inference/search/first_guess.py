@@ -1,12 +1,13 @@
-"""Where an inversion starts: the network's guess with its error at this noise, or the prior."""
+"""Where an inversion starts: the network's guess, with the error that it makes at this noise."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from disorder_landscape.config import DatasetConfig
-from disorder_landscape.inference.observation import Observation
-from disorder_landscape.inference.unknowns import Gaussian, Unknowns
+from disorder_landscape.inference.problem.gaussian import Gaussian
+from disorder_landscape.inference.problem.observation import Observation
+from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.learning.model import TrainedModel, points_of_grid
 from disorder_landscape.model.parameters import FloatArray
 
@@ -15,11 +16,11 @@ WIRES_PER_UNKNOWN = 4
 LOCAL = 2.0
 """They are drawn about the guess, with this many times the network's error without noise."""
 WIDENING = 1.2
-"""Of the measured deviations, which are those of few wires."""
+"""Factor on the measured standard deviations, since they are those of few wires."""
 
 
 def network_labels(model: TrainedModel, unknowns: Unknowns, G: FloatArray) -> FloatArray:
-    """Return the network's labels as unknowns, (member, unknown), for G (member, …, channel)."""
+    """Return the network's labels as unknowns, (sample, unknown), for G (sample, …, channel)."""
     Y = model.predict_labels(G.astype(np.float32))
     return unknowns.vector(dict(zip(model.labels.names, Y.T, strict=True)))
 
@@ -27,13 +28,13 @@ def network_labels(model: TrainedModel, unknowns: Unknowns, G: FloatArray) -> Fl
 def network_guess(
     model: TrainedModel, observation: Observation, rng: np.random.Generator
 ) -> Gaussian:
-    """Return what the network says of a measurement, less its bias, and with the error it makes.
+    """Return what the network predicts from a measurement, less its bias, with its error.
 
-    Both are measured: wires like the guess are simulated, given errors of the stated noise, and
-    shown to the network. So the error is that of this network for such wires at this noise. Of a
-    measurement with more points than the network's grid it is shown those that are its own.
+    Both are measured. Wires like the guess are simulated, given errors of the stated noise, and
+    predicted by the network. So the error is that of this network for such wires at this noise. A
+    measurement may have more points than the network's grid; those on the grid are used.
     """
-    observation = as_seen(model.config.dataset, observation)
+    observation = on_grid_of_network(model.config.dataset, observation)
     unknowns = observation.unknowns
     guess = network_labels(model, unknowns, observation.measurement.G[None])[0]
     error = _error_without_noise(model, unknowns)
@@ -49,7 +50,7 @@ def network_guess(
     return Gaussian(guess - off.mean(axis=0), covariance)
 
 
-def as_seen(config: DatasetConfig, observation: Observation) -> Observation:
+def on_grid_of_network(config: DatasetConfig, observation: Observation) -> Observation:
     """Return the part of an observation that is on the grid of a network's dataset."""
     return observation.at(*points_of_grid(config, vars(observation.measurement), "measurement"))
 

@@ -2,12 +2,12 @@
 
 "Our method's disorder prediction can be verified through the use of additional conductance
 measurements": at other μ, B, bias, barriers or angle θ of the field. The predicted wire is
-simulated at those settings and compared with the measurement, and so are wires with random
-disorder of the same model, the controls. A prediction that explains no more than they do is wrong,
-or the model is. Members of an inversion say more: whether the measurements are among those that
-they make.
+simulated at those settings and compared with the measurement. So are wires with random disorder of
+the same model, the controls. If a prediction explains no more than they do, it is wrong, or the
+model is. The result of an inversion allows a stricter test: whether the posterior predicts the
+measurements within their noise.
 
-Each wire, control or not, is compared at the mean of V that suits it best (`mismatch`).
+Each wire, control or not, is compared at the mean of V that fits best (`mismatch`).
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ from numpy.typing import ArrayLike
 
 from disorder_landscape.arguments import grid_in, require, whole_number_in
 from disorder_landscape.config import DatasetConfig
-from disorder_landscape.inference.comparison import (
-    LEAST_MEMBERS,
-    SIGNIFICANCE,
-    comparison,
-)
-from disorder_landscape.inference.measurement import Measurement, measurement_of, simulated
-from disorder_landscape.inference.mismatch import SHIFTS, mean_squares, simulations
-from disorder_landscape.inference.observation import (
+from disorder_landscape.inference.problem.measurement import Measurement, measurement_of, simulated
+from disorder_landscape.inference.problem.observation import (
     errors_variance,
     noise_of_channels,
     stated_noise,
 )
-from disorder_landscape.inference.posterior import predictive_p
+from disorder_landscape.inference.verification.comparison import (
+    LEAST_SAMPLES,
+    SIGNIFICANCE,
+    comparison,
+)
+from disorder_landscape.inference.verification.mismatch import SHIFTS, mean_squares, simulations
+from disorder_landscape.inference.verification.predictive import predictive_p
 from disorder_landscape.model.disorder import disorder_realization
 from disorder_landscape.model.parameters import FloatArray, Nanowire
 from disorder_landscape.observables.conductance import Progress
@@ -75,7 +75,7 @@ def verify(
         Means of V in meV that are tried, increasing, with finer steps around the best one then;
         0 takes the potentials as they are.
     progress : callable, optional
-        Told how many pairs (μ, B) have just been simulated, and how many there are in all.
+        Called with the number of pairs (μ, B) that have just been simulated, and that of all pairs.
 
     Returns
     -------
@@ -86,14 +86,15 @@ def verify(
         over measurements and channels; shift and control_shift (control) in meV; p_value, the
         chance that wrong disorder scores as well; the sentence verdict as attribute. Channels in
         which wrong disorder differs by no more than the noise have no weight in the scores. Of an
-        inversion, p_members: how likely its members make data as unlike their prediction as these,
-        NaN where they are fewer than 49.
+        inversion, p_samples: the posterior predictive p-value of the measurements, NaN where it has
+        fewer than 49 samples.
 
     Raises
     ------
     ArgumentError
         If the prediction or a measurement is not one wire's, lacks a variable or an attribute or
-        holds NaN, if the settings cannot be simulated, or another argument is out of range.
+        holds NaN, if an older version of `infer` made the prediction, if the settings cannot be
+        simulated, or another argument is out of range.
     """
     given = [measurements] if isinstance(measurements, xr.Dataset) else list(measurements)
     require(bool(given), "measurement", "be one Dataset or more", "there is none")
@@ -108,19 +109,19 @@ def verify(
     lead_mu = model.wire.lead_mu
     controlled = [predicted, *control_wires(model, controls, seed)]
     wires = [replace(wire, lead_mu=lead_mu) for wire in controlled]
-    members = _members(prediction, wires[0])
+    samples = _samples(prediction, wires[0])
     in_all = simulations(len(wires), measured, tried)
-    in_all += len(members) * sum(m.mu.size * m.B.size for m in measured)
+    in_all += len(samples) * sum(m.mu.size * m.B.size for m in measured)
 
-    def told(done: int) -> None:
+    def report(done: int) -> None:
         if progress is not None:
             progress(done, in_all)
 
-    squares, shift = mean_squares(wires, measured, tried, errors, told)
+    squares, shift = mean_squares(wires, measured, tried, errors, report)
     result = comparison(np.sqrt(squares), shift, errors)
     if _is_inversion(prediction):
-        p = _p_of_members(members, measured, errors, np.random.default_rng([seed, 2]), told)
-        result["p_members"] = ((), p, {"units": "1"})
+        p = _p_of_samples(samples, measured, errors, np.random.default_rng([seed, 2]), report)
+        result["p_samples"] = ((), p, {"units": "1"})
     return result
 
 
@@ -128,50 +129,54 @@ def _is_inversion(prediction: xr.Dataset) -> bool:
     return isinstance(prediction, xr.Dataset) and "potential_mean" in prediction.variables
 
 
-def _members(prediction: xr.Dataset, wire: Nanowire) -> list[Nanowire]:
-    """Return the members of an inversion, if the prediction is one and has enough of them."""
-    if not _is_inversion(prediction) or prediction.sizes["member"] < LEAST_MEMBERS:
+def _samples(prediction: xr.Dataset, wire: Nanowire) -> list[Nanowire]:
+    """Return the samples of an inversion, if the prediction is one and has enough of them."""
+    if not _is_inversion(prediction) or prediction.sizes["sample"] < LEAST_SAMPLES:
         return []
     each = zip(prediction["potential"].to_numpy(), prediction["alpha"].to_numpy(), strict=True)
     return [replace(wire, potential=V, alpha=alpha) for V, alpha in each]
 
 
-def _p_of_members(
-    members: Sequence[Nanowire],
+def _p_of_samples(
+    samples: Sequence[Nanowire],
     measured: Sequence[Measurement],
     noise: FloatArray,
     rng: np.random.Generator,
-    told: Callable[[int], None],
+    progress: Callable[[int], None],
 ) -> float:
-    """Return `predictive_p` of an inversion's members, which know the mean of V."""
-    if not members:
+    """Return `predictive_p` of an inversion's samples, each with its own mean of V."""
+    if not samples:
         return np.nan
-    shown = []
+    Y = []
     for m in measured:
         each = []
-        for wire in members:
+        for wire in samples:
             each.append(simulated(replace(wire, barrier=m.barrier), m).ravel())
-            told(m.mu.size * m.B.size)
-        shown.append(each)
+            progress(m.mu.size * m.B.size)
+        Y.append(each)
     data = np.concatenate([m.G.ravel() for m in measured])
     variance = [
         np.broadcast_to(errors_variance(errors), m.G.shape).ravel()
         for errors, m in zip(noise, measured, strict=True)
     ]
-    return predictive_p(np.concatenate(shown, axis=1), data, np.concatenate(variance), rng)
+    return predictive_p(np.concatenate(Y, axis=1), data, np.concatenate(variance), rng)
 
 
 def _predicted_wire(prediction: xr.Dataset) -> Nanowire:
     """Return the wire that was predicted, or the mean of what an inversion has found."""
+    is_dataset = isinstance(prediction, xr.Dataset)
+    is_old = is_dataset and "member" in prediction.dims
+    must = "have the dim sample, if it is the result of an inversion"
+    require(not is_old, "prediction", must, "an older version made it: run infer again")
     must = "hold the potential and alpha of one wire, as `landscape predict` writes them"
     names, wanted = ("potential", "alpha"), {"potential": ("site",), "alpha": ()}
     if _is_inversion(prediction):
         names = "potential_mean", "alpha_mean"
         wanted = {"potential_mean": ("site",), "alpha_mean": ()}
-        wanted |= {"potential": ("member", "site"), "alpha": ("member",)}
+        wanted |= {"potential": ("sample", "site"), "alpha": ("sample",)}
     for name, dims in wanted.items():
-        there = isinstance(prediction, xr.Dataset) and name in prediction.variables
-        require(there, "prediction", must, f"it lacks {name}")
+        is_there = is_dataset and name in prediction.variables
+        require(is_there, "prediction", must, f"it lacks {name}")
         found = prediction[name].dims
         require(found == dims, "prediction", must, f"the dims of {name} are {found}")
     V, alpha = (prediction[name] for name in names)
@@ -184,7 +189,7 @@ def _disorder_model(
     """Return the disorder model that the prediction was made with."""
     if config is None:
         components = prediction.sizes.get("component", 0)
-        must = "hold the components, which tell the disorder model"
+        must = "hold the components, which define the disorder model"
         require(components > 0, "prediction", must, "it lacks them")
         return DatasetConfig(realizations=1, sites=predicted.sites, components=components)
     must = "come from the model that is given"

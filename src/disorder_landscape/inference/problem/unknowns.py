@@ -1,51 +1,22 @@
 """What is unknown of a wire, as one vector: c₁ … c_n, α where it varies, and the mean of V.
 
-The mean is none of the paper's labels (S-II.1), but whoever measures does not know it: it shifts μ
-by more than kT.
+The mean of V is none of the paper's labels (S-II.1). But a measurement does not state it, and it
+shifts μ by more than kT.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Self
 
 import numpy as np
 
 from disorder_landscape.arguments import require
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset.realizations import Realization
+from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.model.disorder import component_covariance, potential_from_components
 from disorder_landscape.model.parameters import PARAMETER_RANGES, FloatArray, Nanowire
-
-
-@dataclass(frozen=True, eq=False)
-class Gaussian:
-    """A normal distribution: mean (unknown,), covariance (unknown, unknown)."""
-
-    mean: FloatArray
-    covariance: FloatArray
-
-    def squared_distance(self, x: FloatArray) -> FloatArray:
-        """Return Mahalanobis' distance of x (…, unknown) from the mean, squared, shape (…,)."""
-        off, precision = x - self.mean, np.linalg.inv(self.covariance)
-        return np.asarray(np.einsum("...i,ij,...j->...", off, precision, off))
-
-    def draw(self, rng: np.random.Generator, members: int) -> FloatArray:
-        """Return an even number of members, shape (member, unknown), in pairs about the mean."""
-        half = rng.normal(size=(members // 2, self.mean.size))
-        spread = np.concatenate([half, -half]) @ np.linalg.cholesky(self.covariance).T
-        return np.asarray(self.mean + spread)
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return what JSON can hold, to the last bit."""
-        return {"mean": self.mean.tolist(), "covariance": self.covariance.tolist()}
-
-    @classmethod
-    def from_dict(cls, content: Mapping[str, Any]) -> Self:
-        """Return the distribution that `to_dict` described."""
-        return cls(np.array(content["mean"]), np.array(content["covariance"]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +39,7 @@ class Unknowns:
 
     @cached_property
     def prior(self) -> Gaussian:
-        """The disorder model's own distribution; that of α has its mean and deviation."""
+        """The disorder model's distribution; of α, which is uniform, the mean and the variance."""
         c, n = self.config, self.config.components
         covariance = np.zeros((len(self.names), len(self.names)))
         disorder = [*range(n), len(self.names) - 1]
@@ -91,8 +62,8 @@ class Unknowns:
             return np.full(x.shape[:-1], self.config.alpha_range[0])
         return np.asarray(np.clip(x[..., self.config.components], *PARAMETER_RANGES["alpha"][:2]))
 
-    def alpha_deviation(self, covariance: FloatArray) -> float:
-        """Return the deviation of α in meV nm, zero where it is known."""
+    def alpha_std(self, covariance: FloatArray) -> float:
+        """Return the standard deviation of α in meV nm, zero where it is known."""
         n = self.config.components
         return float(np.sqrt(covariance[n, n])) if self.config.alpha_is_label else 0.0
 
@@ -101,16 +72,16 @@ class Unknowns:
         return potential_from_components(self.components(x), self.config.sites, x[..., -1])
 
     def wires(self, X: FloatArray, barrier: tuple[float, float]) -> list[Nanowire]:
-        """Return the wires that members (member, unknown) stand for."""
+        """Return the wires of samples X (sample, unknown)."""
         return [
             Nanowire(V, alpha=alpha, barrier=barrier, lead_mu=self.config.wire.lead_mu)
             for V, alpha in zip(self.potential(X), self.alpha(X), strict=True)
         ]
 
-    def site_deviation(self, covariance: FloatArray) -> float:
-        """Return the root mean square over the sites of the deviation of V in meV.
+    def site_std(self, covariance: FloatArray) -> float:
+        """Return the root mean square over the sites of the standard deviation of V in meV.
 
-        The cosine basis is orthonormal, so that no site has to be looked at.
+        The cosine basis is orthonormal, so that the components alone give it.
         """
         n = self.config.components
         of_components = np.trace(covariance[:n, :n]) / self.config.sites
@@ -118,7 +89,7 @@ class Unknowns:
 
     def site_distance(self, x: FloatArray, other: FloatArray) -> float:
         """Return the root-mean-square difference of two potentials in meV."""
-        return self.site_deviation(np.outer(x - other, x - other))
+        return self.site_std(np.outer(x - other, x - other))
 
     def of_realization(self, one: Realization) -> FloatArray:
         """Return the unknowns of a realization, shape (unknown,)."""

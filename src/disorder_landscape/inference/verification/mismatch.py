@@ -1,10 +1,10 @@
-"""How unlike measurements are to what wires show, each at the mean of V that suits it best.
+"""Mismatches of measurements and simulated wires, each at the mean of V that fits best.
 
 The mean of V is none of the paper's labels (S-II.1: it has a standard deviation of 0.01 meV), so
 that a prediction may lack it. It acts as a shift of μ, which an experiment would calibrate, and
-moves levels by more than kT. So each wire is compared at the shift within ±0.03 meV that suits it
-best; the shift is found with the measurements at θ = 0, where there are any: they are simulated
-sooner.
+moves levels by more than kT. So each wire is compared at the shift within ±0.03 meV that fits
+best. The shift is found with the measurements at θ = 0, where there are any, since they are
+simulated faster.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from disorder_landscape.inference.comparison import scores
-from disorder_landscape.inference.measurement import Measurement
+from disorder_landscape.inference.problem.measurement import Measurement
+from disorder_landscape.inference.verification.comparison import scores
 from disorder_landscape.model.disorder import MEAN_STD
 from disorder_landscape.model.parameters import FloatArray, Nanowire
 from disorder_landscape.model.quantities import CONDUCTANCES
@@ -40,7 +40,7 @@ def mean_squares(
     measured: Sequence[Measurement],
     shifts: FloatArray,
     noise: FloatArray,
-    told: Callable[[int], None],
+    progress: Callable[[int], None],
 ) -> tuple[FloatArray, FloatArray]:
     """Return mean squared differences, and the means of V at which they are the least.
 
@@ -53,8 +53,8 @@ def mean_squares(
         Means of V in meV that are tried, increasing.
     noise : array, shape (measurement, channel)
         Standard deviations of errors in e²/h.
-    told : callable
-        Told how many pairs (μ, B) have just been simulated.
+    progress : callable
+        Called with the number of pairs (μ, B) that have just been simulated.
 
     Returns
     -------
@@ -66,19 +66,19 @@ def mean_squares(
     deciding = _decide(measured)
     finer = _finer(shifts)
     first = [m for m, decides in zip(measured, deciding, strict=True) if decides]
-    found = np.array([_of_wire(wire, first, shifts, told) for wire in wires])
+    found = np.array([_of_wire(wire, first, shifts, progress) for wire in wires])
     typical = np.sqrt(np.median(found[1:], axis=(0, 1)))
     squares = np.empty((len(wires), len(measured), len(CONDUCTANCES)))
     best = np.empty(len(wires))
     for w, wire in enumerate(wires):
         coarse = shifts[scores(found[w], typical, noise[deciding]).argmin()]
         tried = np.append(shifts, coarse + finer)
-        further = _of_wire(wire, first, coarse + finer, told)
+        further = _of_wire(wire, first, coarse + finer, progress)
         at_tried = np.concatenate([found[w], further])
         chosen = scores(at_tried, typical, noise[deciding]).argmin()
         best[w], squares[w, deciding] = tried[chosen], at_tried[chosen]
         others = [m for m, decides in zip(measured, deciding, strict=True) if not decides]
-        squares[w, ~deciding] = _of_wire(wire, others, best[w : w + 1], told)[0]
+        squares[w, ~deciding] = _of_wire(wire, others, best[w : w + 1], progress)[0]
     return squares, best
 
 
@@ -96,7 +96,7 @@ def _of_wire(
     wire: Nanowire,
     measured: Sequence[Measurement],
     shifts: FloatArray,
-    told: Callable[[int], None],
+    progress: Callable[[int], None],
 ) -> FloatArray:
     """Return mean squared differences of a wire, shape (shift, measurement, channel)."""
     squares = np.empty((shifts.size, len(measured), len(CONDUCTANCES)))
@@ -108,5 +108,5 @@ def _of_wire(
         for c, name in enumerate(CONDUCTANCES):
             simulated = found[name].to_numpy()[back.reshape(shifted.shape)]
             squares[:, i, c] = ((simulated - m.G[..., c]) ** 2).mean(axis=(1, 2, 3))
-        told(shifted.size * m.B.size)
+        progress(shifted.size * m.B.size)
     return squares

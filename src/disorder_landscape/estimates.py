@@ -1,0 +1,70 @@
+"""How long a command will take on this machine, said before it begins."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+SECOND = 1.0
+"""So long a pace is measured, in seconds, …"""
+WORTH_SAYING = 5.0
+"""… and what takes less than this is not announced."""
+
+
+def duration(seconds: float) -> str:
+    """Return a duration as one says it: "40 seconds", "5 minutes", "2.5 hours"."""
+    if seconds < 90:
+        return f"{round(seconds)} seconds"
+    if seconds < 90 * 60:
+        return f"{round(seconds / 60)} minutes"
+    return f"{seconds / 3600:.1f} hours"
+
+
+def announce(what: str, seconds: float, say: Callable[[str], object] = print) -> None:
+    """Say how long something will take, unless that is soon over."""
+    if seconds >= WORTH_SAYING:
+        say(f"{what}: about {duration(seconds)} on this machine")
+
+
+def seconds_each(action: Callable[[], object]) -> float:
+    """Return how long an action takes, the least of those that a second has room for."""
+    begun, least = time.perf_counter(), float("inf")
+    while time.perf_counter() - begun < SECOND:
+        start = time.perf_counter()
+        action()
+        least = min(least, time.perf_counter() - start)
+    return least
+
+
+class Pace:
+    """Announces how long a loop will take, once its first steps have told.
+
+    Parameters
+    ----------
+    what : str
+    total : float
+        Of the amounts of all steps.
+    say : callable
+    warm_up : int
+        Steps that do not count: the first compile.
+    """
+
+    def __init__(
+        self, what: str, total: float, say: Callable[[str], object] = print, warm_up: int = 2
+    ) -> None:
+        self.what, self.total, self.say, self.warm_up = what, total, say, warm_up
+        self._steps, self._done, self._begun, self._said = 0, 0.0, 0.0, False
+
+    def step(self, amount: float = 1.0) -> None:
+        """Count a step that is done."""
+        if self._said:
+            return
+        self._steps += 1
+        now = time.perf_counter()
+        if self._steps <= self.warm_up:
+            self._begun = now
+            return
+        self._done += amount
+        if now - self._begun >= SECOND:
+            announce(self.what, (now - self._begun) * self.total / self._done, self.say)
+            self._said = True

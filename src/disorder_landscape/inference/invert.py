@@ -1,0 +1,183 @@
+"""From one measurement to attempts at explaining it.
+
+An attempt is a first guess, regression rounds, Gauss–Newton steps and, where the posterior is wide,
+importance sampling. There are attempts until the verdict is known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from itertools import chain
+from typing import NamedTuple
+
+import numpy as np
+
+from disorder_landscape.inference.attempt import Attempt, attempt_at, best
+from disorder_landscape.inference.checkpoint import Cache, Checkpoint, uncached
+from disorder_landscape.inference.posterior.importance_sampling import (
+    importance_sampling,
+    widened,
+)
+from disorder_landscape.inference.problem.gaussian import Gaussian
+from disorder_landscape.inference.problem.observation import Observation
+from disorder_landscape.inference.search.first_guess import network_guess
+from disorder_landscape.inference.search.gauss_newton import gauss_newton
+from disorder_landscape.inference.search.network_features import NetworkFeatures, network_features
+from disorder_landscape.inference.search.regression_rounds import (
+    WITH_NETWORK_FEATURES,
+    RoundSettings,
+    regression_rounds,
+)
+from disorder_landscape.inference.verdict import NOT_CONVERGED, is_surely_right, verdict
+from disorder_landscape.learning.model import TrainedModel
+from disorder_landscape.model.parameters import BOLTZMANN
+
+STRAIGHT = 0.25
+"""Importance sampling finds the posterior if the error bar of V is more than this many kT, or …"""
+LEAST_WIDTH = 1e-3
+"""… this in meV, about the width of levels. Conductances are peaks of about that width, and the
+posterior is no normal distribution about one optimum. By Mahalanobis distances of the truth,
+Laplace's error bars are right below that width and too small above it."""
+ROUND, GAUSS_NEWTON, IMPORTANCE_SAMPLING = "round", "Gauss–Newton", "importance sampling"
+"""The stages of an attempt."""
+
+
+@dataclass(frozen=True)
+class InversionSettings:
+    """How many attempts there are, and how each goes about it."""
+
+    rounds: RoundSettings = field(default_factory=RoundSettings)
+    attempts: int = 3
+    """The first starts from the network's guess, the others from the disorder model's prior."""
+    more_samples: float = 1.25
+    """Each further attempt has so many times the samples for each unknown, and its distribution
+    shrinks more slowly."""
+
+
+class Step(NamedTuple):
+    """What an inversion is at, for a progress callback."""
+
+    attempt: int
+    stage: str
+    """One of ROUND, GAUSS_NEWTON and IMPORTANCE_SAMPLING."""
+    number: int
+    misfit: float
+    """Root mean square in e²/h."""
+    spread: float
+    """The standard deviation of V in meV, root mean square over the sites."""
+
+
+Progress = Callable[[Step], None]
+"""A progress callback: called after each round and each iteration of importance sampling, and
+before each Gauss–Newton step."""
+
+
+def silent(step: Step) -> None:
+    """Do nothing: the progress callback where there is none."""
+
+
+def invert(
+    observation: Observation,
+    model: TrainedModel | None,
+    seed: int = 0,
+    settings: InversionSettings | None = None,
+    progress: Progress = silent,
+    checkpoint: Checkpoint | None = None,
+) -> list[Attempt]:
+    """Return the attempts at explaining the data, the `best` of which is the answer.
+
+    Parameters
+    ----------
+    observation : Observation
+    model : TrainedModel, optional
+        The network that guesses. Attempts start from the disorder model's prior without it, and
+        where its predictions serve as features instead (`usable_network_features`).
+    seed : int
+    settings : InversionSettings, optional
+    progress : callable
+    checkpoint : Checkpoint, optional
+        What an interrupted run has found.
+    """
+    cache = (checkpoint if checkpoint is not None else Checkpoint()).cached
+    features = usable_network_features(model, observation)
+    settings = settings or usual_settings(features)
+    attempts: list[Attempt] = []
+    prior, guess = observation.unknowns.prior, None
+    if model is not None and features is None:
+        rng = np.random.default_rng([seed, 2**31])
+        make = partial(network_guess, model, observation, rng)
+        guess = _cached_gaussian(cache, "guess", make)
+    for number in range(settings.attempts):
+        found = guess if guess is not None and number == 0 else prior
+        count, more = 0, _with_more_samples(settings, number)
+        for one in regression_rounds(observation, found, [seed, number], more, cache, features):
+            progress(Step(number, ROUND, count, one.misfit, one.spread))
+            found, count = one.distribution, count + 1
+        report = partial(_report, progress, number, GAUSS_NEWTON)
+        make = partial(gauss_newton, observation, found, progress=report)
+        answer = _cached_gaussian(cache, f"gauss_newton.{number}", make)
+        attempts.append(attempt_at(observation, found, answer, count))
+        outcome = attempts
+        if number > 0 or settings.attempts == 1 or is_surely_right(observation):
+            report = partial(_report, progress, number, IMPORTANCE_SAMPLING)
+            seeds = [seed, number, 2**31 + 2]
+            outcome = with_importance_samples(observation, attempts, seeds, cache, report)
+        if verdict(observation, outcome) != NOT_CONVERGED:
+            break
+    return outcome
+
+
+def usual_settings(features: NetworkFeatures | None) -> InversionSettings:
+    """Return the settings of an inversion with features from a network, or without."""
+    return InversionSettings(RoundSettings() if features is None else WITH_NETWORK_FEATURES)
+
+
+def usable_network_features(
+    model: TrainedModel | None, observation: Observation
+) -> NetworkFeatures | None:
+    """Return a network as a source of features, if it needs no more data than the first rounds."""
+    return network_features(model, observation, RoundSettings.share)
+
+
+def _cached_gaussian(cache: Cache, name: str, make: Callable[[], Gaussian]) -> Gaussian:
+    return Gaussian.from_dict(cache(name, lambda: make().to_dict()))
+
+
+def _report(
+    progress: Progress, attempt: int, stage: str, number: int, misfit: float, spread: float
+) -> None:
+    progress(Step(attempt, stage, number, misfit, spread))
+
+
+def with_importance_samples(
+    observation: Observation,
+    attempts: list[Attempt],
+    seed: Sequence[int],
+    cache: Cache = uncached,
+    progress: Callable[[int, float, float], None] = lambda number, misfit, spread: None,
+) -> list[Attempt]:
+    """Return the attempts, the best with importance samples if its posterior is wide.
+
+    The first proposals are those with which the rounds and the Gauss–Newton steps of all attempts
+    that fit have ended.
+    """
+    chosen = best(attempts)
+    width = max(STRAIGHT * BOLTZMANN * observation.measurement.temperature, LEAST_WIDTH)
+    bar = observation.unknowns.site_std(chosen.answer.covariance)
+    if not chosen.fits or bar < width:
+        return attempts
+    ends = [(one.last_proposal, widened(one.answer)) for one in attempts if one.fits]
+    drawn = importance_sampling(observation, [*chain(*ends)], seed, cache, progress)
+    instead = replace(chosen, answer=drawn.moments, importance_samples=drawn)
+    return [instead if attempt is chosen else attempt for attempt in attempts]
+
+
+def _with_more_samples(settings: InversionSettings, number: int) -> RoundSettings:
+    more, first = settings.more_samples**number, settings.rounds
+    return replace(
+        first,
+        samples_per_unknown=first.samples_per_unknown * more,
+        least_shrinking=first.least_shrinking ** (1 / more),
+    )

@@ -1,0 +1,161 @@
+"""Samples of a posterior that is no normal distribution: importance sampling.
+
+Where the noise hides much, the posterior is as wide as a peak of the conductances or wider. Then it
+is no normal distribution about one optimum. It bends, and has several maxima. But there the
+distributions with which rounds and Gauss–Newton steps end are nearly as wide as it is. So samples
+of these, weighted with the exact posterior, are samples of the posterior. If few of them have most
+of the weight, the next samples are drawn from a normal distribution with the weighted mean and
+covariance, and so on. All samples count, as if drawn from the mixture of all proposals (adaptive
+multiple importance sampling: Cornuet et al., Scand. J. Stat. 39, 798 (2012)). As long as a few
+samples have all the weight, the weights are tempered: raised to a power below one (Koblents and
+Míguez, Stat. Comput. 25, 407 (2015)).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+from scipy.optimize import brentq
+
+from disorder_landscape.inference.checkpoint import Cache, uncached
+from disorder_landscape.inference.problem.gaussian import Gaussian, log_mixture
+from disorder_landscape.inference.problem.observation import Observation, objective, overall_misfit
+from disorder_landscape.model.parameters import FloatArray
+
+AT_A_TIME = 128
+"""Samples that are drawn before the next proposal is made, at least, …"""
+PER_UNKNOWN = 12
+"""… and for each unknown."""
+ENOUGH = 150.0
+"""The effective sample size at which it ends, at least, …"""
+ENOUGH_PER_UNKNOWN = 12.0
+"""… and for each unknown, …"""
+ITERATIONS = 10
+"""… unless so many iterations have not been enough."""
+LEAST_SHARE = 0.25
+"""The weights from which the next proposal is made are tempered until the effective sample size is
+this share of the samples that are drawn at a time."""
+KEPT = 0.3
+"""Proposals are drawn from again if the effective sample size is this share of the samples.
+Proposals that are fitted to few samples miss the regions that these miss. With each fitted to those
+before, the samples of a normal posterior of eleven unknowns were too narrow by 4 %; like this they
+are right within 1 %."""
+WIDER = 1.2
+"""Proposals have this many times the standard deviation of the weighted samples, or of an
+answer."""
+
+
+@dataclass(frozen=True, eq=False)
+class ImportanceSamples:
+    """Samples (sample, unknown), and weights (sample,) whose sum is one."""
+
+    samples: FloatArray
+    weight: FloatArray
+    power: float = 1.0
+    """To which the weights are raised. If it is less than one, the samples are those of a wider
+    distribution than the posterior."""
+
+    @property
+    def effective_sample_size(self) -> float:
+        """As many independent samples have the same variance (Kish): 1 / Σ weight²."""
+        return float(1 / (self.weight**2).sum())
+
+    @property
+    def is_enough(self) -> bool:
+        """Whether these are samples of the posterior, and as many as are needed."""
+        needed = max(ENOUGH, ENOUGH_PER_UNKNOWN * self.samples.shape[1])
+        return self.power == 1 and self.effective_sample_size >= needed
+
+    @property
+    def moments(self) -> Gaussian:
+        """The normal distribution of the same mean and covariance."""
+        mean = self.weight @ self.samples
+        off = self.samples - mean
+        covariance = (off.T * self.weight) @ off / (1 - 1 / self.effective_sample_size)
+        return Gaussian(mean, (covariance + covariance.T) / 2)
+
+    def draw(self, rng: np.random.Generator, count: int) -> FloatArray:
+        """Return samples (count, unknown) of equal weight, by systematic resampling."""
+        share = np.cumsum(self.weight)
+        at = np.searchsorted(share / share[-1], (rng.random() + np.arange(count)) / count)
+        return self.samples[at]
+
+
+def importance_sampling(
+    observation: Observation,
+    proposals: Sequence[Gaussian],
+    seed: Sequence[int],
+    cache: Cache = uncached,
+    progress: Callable[[int, float, float], None] = lambda number, misfit, spread: None,
+) -> ImportanceSamples:
+    """Draw samples of the posterior, or of a wider one if these are too few for that (`power`).
+
+    Parameters
+    ----------
+    observation : Observation
+    proposals : sequence of Gaussian
+        Where the first samples come from, which must be about as wide as the posterior.
+    seed : sequence of int
+    cache : callable, optional
+        `Checkpoint.cached`.
+    progress : callable, optional
+        Called after each iteration, with its number, the root-mean-square misfit of the most
+        probable sample in e²/h and the standard deviation of V in meV.
+    """
+    unknowns = observation.unknowns
+    count = max(AT_A_TIME, PER_UNKNOWN * len(unknowns.names))
+    drawn: list[tuple[Gaussian, int]] = []
+    X, height = np.empty((0, len(unknowns.names))), np.empty(0)
+    for number in range(ITERATIONS):
+        rng = np.random.default_rng([*seed, number])
+        each = 2 * -(-count // (2 * len(proposals)))
+        drawn += [(proposal, each) for proposal in proposals]
+        new = np.concatenate([proposal.draw(rng, each) for proposal in proposals])
+        name = f"importance_sampling.{'.'.join(map(str, seed))}.{number}"
+        simulated = cache(name, partial(_simulated, observation, new))
+        X, height = np.concatenate([X, new]), np.append(height, simulated["height"])
+        found = tempered(X, -0.5 * height - log_mixture(drawn, X), LEAST_SHARE * count)
+        moments = found.moments
+        progress(number, simulated["misfit"], unknowns.site_std(moments.covariance))
+        if found.is_enough:
+            break
+        if found.effective_sample_size < KEPT * len(X):
+            proposals = [widened(moments)]
+    return found
+
+
+def widened(answer: Gaussian) -> Gaussian:
+    """Return a wider distribution, as proposals of importance sampling have to be."""
+    return Gaussian(answer.mean, WIDER**2 * answer.covariance)
+
+
+def _simulated(observation: Observation, X: FloatArray) -> dict[str, Any]:
+    """Return the `height` of samples, −2 log of the posterior density, and the least `misfit`."""
+    Y = observation.simulate(X)
+    height = objective(observation, X, Y)
+    return {
+        "height": height.tolist(),
+        "misfit": overall_misfit(observation, Y[int(height.argmin())]),
+    }
+
+
+def tempered(X: FloatArray, log_weight: FloatArray, least: float) -> ImportanceSamples:
+    """Return samples with weights to the largest power that leaves this effective sample size.
+
+    The power is one if the weights themselves have it.
+    """
+
+    def to_the(power: float) -> ImportanceSamples:
+        weight = np.exp(power * (log_weight - log_weight.max()))
+        return ImportanceSamples(X, weight / weight.sum(), power)
+
+    whole = to_the(1.0)
+    if whole.effective_sample_size >= least:
+        return whole
+    return to_the(
+        float(brentq(lambda power: to_the(power).effective_sample_size - least, 0.0, 1.0))
+    )

@@ -1,0 +1,1 @@
+"""From far to near: the most probable wire and the width of the posterior about it."""

@@ -1,0 +1,1 @@
+"""Predicted wires compared with further measurements."""

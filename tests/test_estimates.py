@@ -1,0 +1,56 @@
+import pytest
+
+from disorder_landscape import estimates
+from disorder_landscape.estimates import Pace, announce, duration, seconds_each
+
+
+@pytest.mark.parametrize(
+    ("seconds", "said"),
+    [
+        (40.4, "40 seconds"),
+        (89.0, "89 seconds"),
+        (100.0, "2 minutes"),
+        (3599.0, "60 minutes"),
+        (9000.0, "2.5 hours"),
+    ],
+)
+def test_durations_are_said_in_one_unit(seconds, said):
+    assert duration(seconds) == said
+
+
+def test_what_is_soon_over_is_not_announced():
+    said = []
+    announce("generate", 4.9, said.append)
+    assert not said
+    announce("generate", 300.0, said.append)
+    assert said == ["generate: about 5 minutes on this machine"]
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    """A clock that stands still until it is moved."""
+    now = [100.0]
+    monkeypatch.setattr(estimates.time, "perf_counter", lambda: now[0])
+    return now
+
+
+def test_a_pace_tells_from_the_steps_after_the_warm_up(clock):
+    said = []
+    pace = Pace("train", 1000, said.append)
+    for seconds in (20.0, 5.0, 0.25, 0.25, 0.25):
+        clock[0] += seconds
+        pace.step(10)
+        assert not said
+    for _ in range(3):
+        clock[0] += 0.25
+        pace.step(10)
+    assert said == ["train: about 25 seconds on this machine"]
+
+
+def test_the_time_of_an_action_is_the_least(clock):
+    lasts = iter([0.3, 0.1, 0.2, 0.5, 9.0])
+
+    def action():
+        clock[0] += next(lasts)
+
+    assert seconds_each(action) == pytest.approx(0.1)
