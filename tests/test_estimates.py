@@ -1,7 +1,7 @@
 import pytest
 
 from disorder_landscape import estimates
-from disorder_landscape.estimates import Pace, announce, duration, seconds_each
+from disorder_landscape.estimates import Pace, announce, announce_repeated, duration
 
 
 @pytest.mark.parametrize(
@@ -47,10 +47,15 @@ def test_a_pace_tells_from_the_steps_after_the_warm_up(clock):
     assert said == ["train: about 25 seconds on this machine"]
 
 
-def test_the_time_of_an_action_is_the_least(clock):
-    lasts = iter([0.3, 0.1, 0.2, 0.5, 9.0])
+@pytest.mark.parametrize(
+    ("times", "said", "left"),
+    [(600, ["generate: about 60 seconds on this machine"], 1), (10, [], 4)],
+)
+def test_what_is_repeated_takes_the_least_time_of_a_second(clock, times, said, left):
+    lasts, heard = [0.3, 0.1, 0.2, 0.5, 9.0], []
 
     def action():
-        clock[0] += next(lasts)
+        clock[0] += lasts.pop(0)
 
-    assert seconds_each(action) == pytest.approx(0.1)
+    announce_repeated("generate", action, times, heard.append)
+    assert (heard, len(lasts)) == (said, left)

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import xarray as xr
@@ -19,8 +20,12 @@ from tqdm import tqdm
 from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.config import Config, DatasetConfig, load_config
 from disorder_landscape.dataset import shards
+from disorder_landscape.dataset.realizations import simulate
 from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
+from disorder_landscape.estimates import announce_repeated
+from disorder_landscape.machine import cores
 from disorder_landscape.model.quantities import with_units
+from disorder_landscape.solver import compiled
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 SHIPPED = "shipped"
@@ -133,14 +138,19 @@ def preset_run(preset: str, build: str | Path = "build", model: str = FIVE) -> R
 
 def generate(run: Run, workers: int) -> None:
     """Make what is missing of the run's dataset, with a progress bar."""
+    config = run.config.dataset
+    there = shards.status(config, run.dataset_folder).realizations
+    with compiled.threads_at_work(1):
+        wires = (config.realizations - there) / min(workers, cores())
+        announce_repeated("generate", partial(simulate, config, range(1)), wires)
     with tqdm(
-        total=run.config.dataset.realizations,
+        total=config.realizations,
         unit=" realizations",
         desc="generate",
         smoothing=0.1,
-        initial=shards.status(run.config.dataset, run.dataset_folder).realizations,
+        initial=there,
     ) as bar:
-        shards.generate(run.config.dataset, run.dataset_folder, workers, bar.update)
+        shards.generate(config, run.dataset_folder, workers, bar.update)
 
 
 def train(run: Run) -> None:

@@ -26,14 +26,25 @@ def announce(what: str, seconds: float, say: Callable[[str], object] = print) ->
         say(f"{what}: about {duration(seconds)} on this machine")
 
 
-def seconds_each(action: Callable[[], object]) -> float:
-    """Return how long an action takes, the least of those that a second has room for."""
+def announce_repeated(
+    what: str,
+    action: Callable[[], object],
+    times: float,
+    say: Callable[[str], object] = print,
+) -> None:
+    """Say how long an action will take that is done so many times.
+
+    It is done for a second, or once, if all of it is soon over then.
+    """
     begun, least = time.perf_counter(), float("inf")
-    while time.perf_counter() - begun < SECOND:
+    while True:
         start = time.perf_counter()
         action()
-        least = min(least, time.perf_counter() - start)
-    return least
+        now = time.perf_counter()
+        least = min(least, now - start)
+        if now - begun >= SECOND or least * times < WORTH_SAYING:
+            break
+    announce(what, least * times, say)
 
 
 class Pace:
@@ -53,7 +64,8 @@ class Pace:
         self, what: str, total: float, say: Callable[[str], object] = print, warm_up: int = 2
     ) -> None:
         self.what, self.total, self.say, self.warm_up = what, total, say, warm_up
-        self._steps, self._done, self._begun, self._said = 0, 0.0, 0.0, False
+        self._steps, self._done, self._said = 0, 0.0, False
+        self._begun = time.perf_counter()
 
     def step(self, amount: float = 1.0) -> None:
         """Count a step that is done."""

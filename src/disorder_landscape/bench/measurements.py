@@ -17,6 +17,7 @@ from disorder_landscape.dataset.store import PACKAGES
 from disorder_landscape.machine import cores, cpu_name
 from disorder_landscape.model.disorder import disorder_realization
 from disorder_landscape.model.parameters import ALPHA_RANGE, TEMPERATURE, Nanowire
+from disorder_landscape.solver import compiled
 from disorder_landscape.solver.energy_grid import thermal_grid
 from disorder_landscape.solver.routes import thermal_average
 
@@ -77,7 +78,7 @@ def measure(repeats: int, progress: Progress = lambda done: None) -> dict[str, A
         **{f"per energy, {n} sites": stopwatches.bare(some[0], *grid) for n, some in long.items()},
         **{f"per set, {n} sites": stopwatches.sets(some, *few) for n, some in long.items()},
     }
-    with threadpool_limits(1), stopwatches.threads_at_work(1):
+    with threadpool_limits(1), compiled.threads_at_work(1):
         averaged = {
             name: thermal_average(wires[name], *grids[name], BIASES, TEMPERATURE)[1:]
             for name in DATASETS

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
-from contextlib import contextmanager
 from itertools import islice
 from multiprocessing import get_context
 from pathlib import Path
@@ -71,7 +70,7 @@ def sets(wires: list[Nanowire], mu: FloatArray, B: FloatArray, threads: int = 1)
     """Time the exact thermal average, per (wire, μ, B), on so many threads."""
 
     def average() -> None:
-        with threads_at_work(threads):
+        with compiled.threads_at_work(threads):
             thermal_average(wires, mu, B, BIASES, TEMPERATURE)
 
     return lambda: _seconds(average) / (len(wires) * mu.size * B.size)
@@ -81,16 +80,6 @@ def _seconds(action: Callable[[], object]) -> float:
     start = time.perf_counter()
     action()
     return time.perf_counter() - start
-
-
-@contextmanager
-def threads_at_work(threads: int) -> Iterator[None]:
-    """Use so many threads, then as many as before."""
-    before = compiled.core.set_threads(threads)
-    try:
-        yield
-    finally:
-        compiled.core.set_threads(before)
 
 
 def peak_memory(config: DatasetConfig) -> float:

@@ -23,7 +23,7 @@ from disorder_landscape.model.parameters import (
     FloatArray,
     Nanowire,
 )
-from disorder_landscape.solver import kwant_reference
+from disorder_landscape.solver import compiled, kwant_reference
 from disorder_landscape.solver.routes import thermal_average
 
 TURNS = 5
@@ -86,7 +86,7 @@ def _grid() -> tuple[FloatArray, FloatArray]:
 
 def _in_turn(*watches: stopwatches.Stopwatch) -> list[tuple[float, ...]]:
     """Return the times of each turn, in which all are measured one after the other."""
-    with threadpool_limits(1), stopwatches.threads_at_work(1):
+    with threadpool_limits(1), compiled.threads_at_work(1):
         return [tuple(watch() for watch in watches) for _ in range(TURNS + 1)][1:]
 
 
@@ -95,7 +95,7 @@ def _core_seconds(threads: int) -> stopwatches.Stopwatch:
     wires, (mu, B) = _wires(), _grid()
 
     def watch() -> float:
-        with stopwatches.threads_at_work(min(threads, cores())):
+        with compiled.threads_at_work(min(threads, cores())):
             started = time.process_time()
             thermal_average(wires, mu, B, stopwatches.BIASES, TEMPERATURE)
             return (time.process_time() - started) / (len(wires) * mu.size * B.size)

@@ -46,10 +46,11 @@ def infer(
     from disorder_landscape.dataset.store import read_dataset, write_dataset
     from disorder_landscape.files import check_netcdf, check_writable
     from disorder_landscape.inference.infer import infer as find
+    from disorder_landscape.inference.infer import observation_of
     from disorder_landscape.inference.plot import plot_inference
     from disorder_landscape.inference.problem.measurement import measurement_of
     from disorder_landscape.inference.problem.observation import stated_noise
-    from disorder_landscape.inference.progress import inference_progress
+    from disorder_landscape.inference.progress import announce_inference, inference_progress
     from disorder_landscape.inference.report import noise_hint, parse_noise, summary
     from disorder_landscape.learning.model import load_model_config
     from disorder_landscape.simulation import check_plot
@@ -62,9 +63,11 @@ def infer(
         check_writable("plot", plot)
     measured = read_dataset(measurement)
     errors = stated_noise(measured.attrs) if noise is None else parse_noise(noise)
-    hint = "" if from_prior else noise_hint(load_model_config(model).training, errors)
+    config = load_model_config(model)
+    hint = "" if from_prior else noise_hint(config.training, errors)
     if hint:
         print(hint, file=sys.stderr)
+    announce_inference(observation_of(measured, config.dataset, errors))
     unfinished = output.with_name(f"{output.name}.unfinished.json")
     with resumable(), inference_progress() as progress:
         result = find(

@@ -108,13 +108,11 @@ def infer(
         model.config if isinstance(model, TrainedModel) else load_model_config(Path(model))
     )
     config = whole_config.dataset
-    measurement = measurement_of(G, settings_of(config), complete=False)
-    _check_alpha(config, G.attrs)
-    errors = noise_of_channels(stated_noise(G.attrs) if noise is None else noise)
+    observation = observation_of(G, config, noise)
+    measurement, errors = observation.measurement, observation.noise
     samples = whole_number_in("samples", samples, 2, 10_000)
     require(samples % 2 == 0, "samples", "be an even number", f"it is {samples}")
     seed = whole_number_in("seed", seed, 0, 2**31)
-    observation = Observation(measurement, Unknowns(config), errors)
     trained, missing = None, False
     if network:
         missing = not _on_grid_of_network(config, observation).is_measured.all()
@@ -150,6 +148,30 @@ def infer(
     if chosen.importance_samples is not None:
         result.attrs["effective_sample_size"] = chosen.importance_samples.effective_sample_size
     return result
+
+
+def observation_of(
+    G: xr.Dataset, config: DatasetConfig, noise: float | Mapping[str, float] | None = None
+) -> Observation:
+    """Return what was measured of a wire, with what is unknown of it.
+
+    Parameters
+    ----------
+    G : Dataset
+    config : DatasetConfig
+        Of the model's dataset.
+    noise : float or mapping, optional
+        All three as in `infer`.
+
+    Raises
+    ------
+    ArgumentError
+        As in `infer`.
+    """
+    measurement = measurement_of(G, settings_of(config), complete=False)
+    _check_alpha(config, G.attrs)
+    errors = noise_of_channels(stated_noise(G.attrs) if noise is None else noise)
+    return Observation(measurement, Unknowns(config), errors)
 
 
 def _check_alpha(config: DatasetConfig, attrs: Mapping[Any, Any]) -> None:

@@ -1,12 +1,14 @@
-"""A progress bar for an inversion."""
+"""How long an inversion will take, and a progress bar for it."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 
 from tqdm import tqdm
 
+from disorder_landscape.estimates import announce_repeated
 from disorder_landscape.inference.invert import (
     GAUSS_NEWTON,
     IMPORTANCE_SAMPLING,
@@ -14,10 +16,25 @@ from disorder_landscape.inference.invert import (
     Progress,
     Step,
 )
+from disorder_landscape.inference.problem.observation import Observation
+from disorder_landscape.inference.verdict import is_surely_right
 
 USUAL_STEPS = {ROUND: 4, GAUSS_NEWTON: 3, IMPORTANCE_SAMPLING: 4}
 """How many most attempts from a guess take, of about one length: what the time left is estimated
 from."""
+
+WIRES_PER_UNKNOWN = 35, 130
+"""How many times all data of a wire are simulated for each unknown: where an answer that fits is
+surely right, and where a second attempt must agree. Means of inversions of 5+1 and ten components
+with noise up to 0.05 e²/h, within a third."""
+
+
+def announce_inference(observation: Observation) -> None:
+    """Say how long an inversion will take, after simulating what is measured for a second."""
+    prior = observation.unknowns.prior.mean
+    once, twice = WIRES_PER_UNKNOWN
+    wires = prior.size * (once if is_surely_right(observation) else twice)
+    announce_repeated("infer", partial(observation.simulate, prior[None]), wires)
 
 
 @contextmanager

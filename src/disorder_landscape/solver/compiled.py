@@ -7,7 +7,8 @@ environment variable DISORDER_LANDSCAPE_CORE names another one.
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from importlib import import_module
 from typing import TYPE_CHECKING
 
@@ -32,6 +33,7 @@ __all__ = [
     "lead_self_energies",
     "reflection_determinant",
     "thermal_conductance",
+    "threads_at_work",
 ]
 
 CHOICE = "DISORDER_LANDSCAPE_CORE"
@@ -91,6 +93,16 @@ if not TYPE_CHECKING:
 GROWTH_LIMIT: float = core.GROWTH_LIMIT
 """Largest inverse pivot, or product of couplings, (in units of t') up to which elimination without
 pivoting is trusted: see core/wire/elimination.hpp."""
+
+
+@contextmanager
+def threads_at_work(count: int) -> Iterator[None]:
+    """Use so many threads, then as many as before."""
+    before = core.set_threads(count)
+    try:
+        yield
+    finally:
+        core.set_threads(before)
 
 
 def handed_over(wires: Sequence[Nanowire]) -> tuple[FloatArray, FloatArray]:

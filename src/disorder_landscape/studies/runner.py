@@ -11,6 +11,7 @@ from typing import Any
 from tqdm import tqdm
 
 from disorder_landscape.dataset.store import provenance
+from disorder_landscape.estimates import Pace
 from disorder_landscape.files import replacing, write_json
 from disorder_landscape.studies.plan import Study
 from disorder_landscape.studies.rows import Row, as_text, read_rows, stored_numbers, write_rows
@@ -45,14 +46,15 @@ def carry_out(study: Study, place: Place, limit: int | None = None) -> Derived:
     if chosen:
         done = len(study.tasks) - len(missing)
         bar = tqdm(total=len(study.tasks), initial=done, desc=study.name, unit=" tasks")
+        pace = Pace(study.name, len(chosen), tqdm.write, warm_up=0)
         with bar:
-            _complete(study, place, chosen, bar)
+            _complete(study, place, chosen, bar, pace)
     if study.missing(place):
         return Derived()
     return _conclude(study, place, bool(chosen))
 
 
-def _complete(study: Study, place: Place, tasks: Sequence[Any], bar: Any) -> None:
+def _complete(study: Study, place: Place, tasks: Sequence[Any], bar: Any, pace: Pace) -> None:
     """Carry tasks out, and write their rows every few seconds and at the end."""
     new: list[Row] = []
     written = time.monotonic()
@@ -60,6 +62,7 @@ def _complete(study: Study, place: Place, tasks: Sequence[Any], bar: Any) -> Non
         for rows in _results(study.plan, place, tasks):
             new += rows
             bar.update()
+            pace.step()
             if time.monotonic() - written > WRITTEN_EVERY:
                 _add(study, place, new)
                 new, written = [], time.monotonic()
