@@ -71,7 +71,15 @@ struct Apart {
 
 struct Mode {
     Amplitude lambda, two_i_sin;
+    bool propagates;
 };
+
+// Σ of a lead in which no mode propagates: it absorbs nothing, and is real.  What rounding says it does would show where a
+// level of the wire is at the energy.
+inline Spin2 closed(const Spin2& M) {
+    double off = 0.5 * (M(0, 1) + M(1, 0)).real();
+    return {{{M(0, 0).real(), off}, {off, M(1, 1).real()}}};
+}
 
 // The outgoing mode with cos k = 1 − x = y − 1; `forwards` tells whether of two propagating modes the
 // one with sin k > 0 is outgoing.
@@ -80,11 +88,11 @@ inline Mode outgoing(Amplitude x, Amplitude y, bool forwards) {
     Amplitude c = std::abs(x) < std::abs(y) ? 1.0 - x : y - 1.0;
     if (x.imag() == 0 && x.real() >= 0 && y.real() >= 0) {
         Amplitude i_sin(0.0, std::copysign(std::sqrt(x.real() * y.real()), forwards ? 1.0 : -1.0));
-        return {c + i_sin, 2.0 * i_sin};
+        return {c + i_sin, 2.0 * i_sin, true};
     }
     Amplitude i_sin = I * std::sqrt(x * y);
-    if (std::abs(c + i_sin) < std::abs(c - i_sin)) return {1.0 / (c - i_sin), 2.0 * i_sin};
-    return {1.0 / (c + i_sin), -2.0 * i_sin};
+    if (std::abs(c + i_sin) < std::abs(c - i_sin)) return {1.0 / (c - i_sin), 2.0 * i_sin, false};
+    return {1.0 / (c + i_sin), -2.0 * i_sin, false};
 }
 
 // The right lead's electron block at energy E, in meV.
@@ -102,10 +110,12 @@ inline Spin2 electron_self_energy(double E, const LeadParameters& lead) {
     Apart y(2 * s2 - t * high, r, hop2 * (high - zeeman) * (high + zeeman));
     Apart m(s2 * (low - 2 * t), t * r, hop2 * (s2 * low * high - t2 * zeeman * zeeman));
     Amplitude u[2], d[2], lambda[2];
+    bool open = false;
     for (int k = 0; k < 2; ++k) {
         Amplitude mass = (k == 0 ? m.minus : m.plus) / hop2;
         Mode mode = outgoing((k == 0 ? x.plus : x.minus) / (2 * hop2), (k == 0 ? y.minus : y.plus) / (2 * hop2),
                              (mass.real() < 0) == (k == 0));
+        open = open || mode.propagates;
         Amplitude w = s * mode.two_i_sin;
         bool up = std::abs(zeeman + w) > std::abs(zeeman - w);
         lambda[k] = mode.lambda;
@@ -118,7 +128,8 @@ inline Spin2 electron_self_energy(double E, const LeadParameters& lead) {
     Amplitude f10 = (lambda[0] - lambda[1]) * d[0] * d[1] / det;
     Amplitude f11 = (lambda[1] * u[0] * d[1] - lambda[0] * u[1] * d[0]) / det;
     // the hopping −t − is σy is the real matrix [[−t, −s], [s, −t]]
-    return {{{-t * f00 - s * f10, -t * f01 - s * f11}, {s * f00 - t * f10, s * f01 - t * f11}}};
+    Spin2 sigma{{{-t * f00 - s * f10, -t * f01 - s * f11}, {s * f00 - t * f10, s * f01 - t * f11}}};
+    return open ? sigma : closed(sigma);
 }
 
 }  // namespace detail

@@ -10,8 +10,9 @@
 // self-energy is T F, F = U λ U⁻¹, T the hopping.  The mirror takes θ to −θ and that transposes, so
 // that the left lead's is σx Σᵀ σx, and holes are those of self_energy.hpp.
 //
-// Where modes of two spins cross, at λ = σ = ±1, two roots all but coincide, and λ cannot tell them apart.  With
-// λ = σ e^{iq}, e = E' + 2tσ, both are worked out in q, in which nothing small is a difference of what is not:
+// Where modes of two spins cross, at λ = σ = ±1, two roots all but coincide, and λ cannot tell them apart.  Nor
+// can it tell all four apart near the edge of a band whose width is large.  With
+// λ = σ e^{iq}, e = E' + 2tσ, they are worked out in q, in which nothing small is a difference of what is not:
 //
 //     m = e − 4tσ sin² ½q,   w = v + 2sσ sin q,   q ≈ (−v ± √(e² − h²))/2sσ.
 //
@@ -22,6 +23,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "self_energy.hpp"
@@ -145,34 +147,67 @@ struct TiltedLead {
         return {sigma * std::exp(Amplitude(-q.imag(), q.real())), e - 4 * t * sigma * half * half, across + 2 * s * sin, sin, sigma * std::cos(q), true, q.imag() == 0};
     }
 
-    // The two modes that cross near σ, from where the bands are straight lines on, by Aberth's iteration.
-    void crossing(double sigma, TiltedMode (&modes)[2]) const {
-        constexpr int STEPS = 20;
-        double e = sigma > 0 ? low : high;
-        Amplitude root = std::sqrt(Amplitude((e - along) * (e + along))), q[2];
-        for (int k = 0; k < 2; ++k) q[k] = ((k == 0 ? root : -root) - across) / (2 * s * sigma);
+    // The modes near σ whose q start from these, by Aberth's iteration.
+    void near_edge(double sigma, std::span<Amplitude> q, std::span<TiltedMode> modes) const {
+        constexpr int STEPS = 60;
         for (int step = 0; step < STEPS; ++step) {
             double moved = 0.0;
-            for (int k = 0; k < 2; ++k) {
+            for (size_t k = 0; k < q.size(); ++k) {
                 TiltedMode at = mode_at(q[k], sigma);
-                Amplitude value = at.m * at.m - along * along - at.w * at.w;
+                Amplitude value = (at.m - along) * (at.m + along) - at.w * at.w;
                 Amplitude slope = -4.0 * t * at.m * at.sin - 4.0 * s * at.w * at.cos;
-                Amplitude newton = value / slope, change = newton / (1.0 - newton / (q[k] - q[1 - k]));
+                Amplitude newton = value / slope, repelled = 0.0;
+                for (size_t other = 0; other < q.size(); ++other)
+                    if (other != k) repelled += 1.0 / (q[k] - q[other]);
+                Amplitude change = newton / (1.0 - newton * repelled);
                 if (!std::isfinite(std::abs(change))) continue;
                 q[k] -= change;
-                moved = std::max(moved, std::abs(change));
+                moved = std::max(moved, std::abs(change) / distance(q, k));
             }
-            if (moved <= 1e-16 * std::abs(q[0] - q[1])) break;
+            if (moved <= 1e-16) break;
         }
-        for (int k = 0; k < 2; ++k) {
-            if (std::abs(q[k].imag()) <= REAL * std::abs(q[0] - q[1])) q[k] = q[k].real();
-            modes[k] = mode_at(q[k], sigma);
-        }
+        for (size_t k = 0; k < q.size(); ++k)
+            if (std::abs(q[k].imag()) <= REAL * distance(q, k)) q[k] = q[k].real();
+        for (size_t k = 0; k < q.size(); ++k) modes[k] = mode_at(q[k], sigma);
+    }
+
+    // The two modes that cross near σ, from where the bands are straight lines on.
+    void crossing(double sigma, std::span<TiltedMode> modes) const {
+        double e = sigma > 0 ? low : high;
+        Amplitude root = std::sqrt(Amplitude((e - along) * (e + along)));
+        Amplitude q[2] = {(root - across) / (2 * s * sigma), (-root - across) / (2 * s * sigma)};
+        near_edge(sigma, q, modes);
+    }
+
+    // All four modes, which are near σ, from a circle on whose radius is that of the roots of
+    //
+    //     (e − tσq²)² − h² − (v + 2sσq)² = 0.
+    void band_edge(double sigma, std::span<TiltedMode> modes) const {
+        double e = sigma > 0 ? low : high, rest = std::abs((e - along) * (e + along) - across * across);
+        double radius = std::max({std::sqrt(2 * std::abs(e) / t + 4 * s * s / (t * t)), std::cbrt(4 * std::abs(across * s) / (t * t)),
+                                  std::sqrt(std::sqrt(rest) / t)});
+        Amplitude q[4];
+        for (int k = 0; k < 4; ++k) q[k] = std::polar(radius, 0.4 + k * 1.5707963267948966);
+        near_edge(sigma, q, modes);
+    }
+
+private:
+    // From q_k to the nearest other one.
+    static double distance(std::span<const Amplitude> q, size_t k) {
+        double least = std::numeric_limits<double>::infinity();
+        for (size_t other = 0; other < q.size(); ++other)
+            if (other != k) least = std::min(least, std::abs(q[k] - q[other]));
+        return least;
     }
 };
 
-// F of the modes that are outgoing to the right, and whether some cross.
-inline std::pair<Spin2, bool> from_modes(const TiltedLead& lead) {
+// F of the modes that are outgoing to the right, whether some cross, and whether one propagates.
+struct Outgoing {
+    Spin2 F;
+    bool crosses, open;
+};
+
+inline Outgoing from_modes(const TiltedLead& lead) {
     constexpr Amplitude I(0.0, 1.0);
     double t = lead.t, s = lead.s, shifted = (lead.low + lead.high) / 2, hop2 = t * t + s * s;
     Amplitude root[4];
@@ -185,11 +220,15 @@ inline std::pair<Spin2, bool> from_modes(const TiltedLead& lead) {
         int near[4] = {0, 1, 2, 3};
         auto away = [&](int k) { return std::abs(root[k] - sigma); };
         std::sort(near, near + 4, [&](int a, int b) { return away(a) < away(b); });
-        if (!(away(near[1]) < NEARBY && away(near[1]) < NEARER * away(near[2]))) continue;
-        TiltedMode two[2];
-        lead.crossing(sigma, two);
-        for (int k = 0; k < 2; ++k) modes[near[k]] = two[k];
-        crosses = true;
+        if (away(near[3]) < NEARBY) {
+            lead.band_edge(sigma, modes);
+            crosses = true;
+        } else if (away(near[1]) < NEARBY && away(near[1]) < NEARER * away(near[2])) {
+            TiltedMode two[2];
+            lead.crossing(sigma, two);
+            for (int k = 0; k < 2; ++k) modes[near[k]] = two[k];
+            crosses = true;
+        }
     }
     double inwards[4];
     Amplitude spinor[4][2];
@@ -210,7 +249,13 @@ inline std::pair<Spin2, bool> from_modes(const TiltedLead& lead) {
     int a = mode[0], b = mode[1];
     Spin2 U{{{spinor[a][0], spinor[b][0]}, {spinor[a][1], spinor[b][1]}}};
     Spin2 shift{{{modes[a].lambda, 0.0}, {0.0, modes[b].lambda}}};
-    return {U * shift * inverse(U), crosses};
+    return {U * shift * inverse(U), crosses, modes[a].propagates || modes[b].propagates};
+}
+
+// Σ of a lead in which no mode propagates, as in self_energy.hpp: it is Hermitian.
+inline Spin2 closed_tilted(const Spin2& M) {
+    Amplitude off = 0.5 * (M(0, 1) + std::conj(M(1, 0)));
+    return {{{M(0, 0).real(), off}, {std::conj(off), M(1, 1).real()}}};
 }
 
 // The right lead's electron block at energy E, in meV.
@@ -243,8 +288,9 @@ inline Spin2 tilted_electron_self_energy(double E, const LeadParameters& lead, d
     if (cross > CLOSE && zeeman < 4 * SMALL * hop * edge * std::min(edge, cross))
         return T * refined(inverse(T) * electron_self_energy(E, free), T, H);
     if (zeeman < NEGLIGIBLE * hop && edge < cross) return electron_self_energy(E, free);
-    auto [F, crosses] = from_modes({low, low - 4 * t, t, s, along, across});
-    return T * (crosses ? F : refined(F, T, H));
+    auto [F, crosses, open] = from_modes({low, low - 4 * t, t, s, along, across});
+    Spin2 sigma = T * (crosses ? F : refined(F, T, H));
+    return open ? sigma : closed_tilted(sigma);
 }
 
 }  // namespace detail

@@ -6,7 +6,7 @@ import pytest
 from disorder_landscape import ArgumentError, Nanowire
 from disorder_landscape.solver import compiled, kwant_reference
 from disorder_landscape.studies.exact import exact_conductances
-from disorder_landscape.studies.odd_cases import any_case, warm_case
+from disorder_landscape.studies.odd_cases import any_case, any_energy, warm_case
 from disorder_landscape.studies.odd_wires import CLOSE, report
 from disorder_landscape.studies.plan import load_study
 from disorder_landscape.studies.runner import carry_out
@@ -75,6 +75,19 @@ def test_modes_of_tilted_leads_cross(index, omega):
     found = compiled.bare_conductance([wire], mu, B, np.array([omega]), theta)[0, 0, 0, 0]
     exact = exact_conductances(wire, mu[0], B[0], omega, theta)
     np.testing.assert_allclose(found, exact, rtol=0, atol=CLOSE)
+
+
+@pytest.mark.parametrize(
+    ("seed", "index"),
+    [(9, 10763), (9, 43697), (10, 1391), (10, 17354), (10, 23579), (10, 34188), (10, 36400)],
+)
+def test_leads_near_the_edge_of_a_wide_band(seed, index):
+    """Where λ cannot tell four modes apart, or rounding opened a closed lead: off by up to 0.005."""
+    wire, mu, B, theta = any_case(seed, index)
+    omega = any_energy(seed, index)
+    found = compiled.bare_conductance([wire], mu, B, omega, theta)[0, 0, 0, 0]
+    exact = exact_conductances(wire, mu[0], B[0], omega[0], theta)
+    np.testing.assert_allclose(found, exact, rtol=0, atol=1e-11)
 
 
 @pytest.mark.parametrize("B", np.geomspace(1e-14, 1e-3, 12))

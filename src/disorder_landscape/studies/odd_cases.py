@@ -69,6 +69,14 @@ def any_case(seed: int, index: int) -> Case:
     return Case(wire, np.array([mu]), np.array([B]), float(theta))
 
 
+def any_energy(seed: int, index: int) -> FloatArray:
+    """Draw the energy in meV of a wire of `any_case`: above the gap, at zero, nearly so, or any."""
+    rng, gap = np.random.default_rng([seed, 1, index]), any_case(seed, index).wire.delta0
+    if rng.random() < 0.2:
+        return np.array([(1 + log_uniform(rng, 1e-3, 2)) * gap])
+    return np.array([rng.choice([0.0, 1e-9, rng.uniform(0, 1)]) * gap])
+
+
 def warm_case(seed: int, index: int) -> tuple[Case, FloatArray, float]:
     """Draw a wire of parameters within some orders of the paper's, biases and a temperature."""
     rng = np.random.default_rng([seed, 2, index])
