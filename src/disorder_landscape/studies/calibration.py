@@ -72,7 +72,7 @@ class CalibrationPlan(Plan):
         -------
         list of dict
             The part of the proposals that is accepted, the largest distance of the means in
-            deviations, and the mean ratio of the deviations.
+            standard deviations, and the mean ratio of the standard deviations.
         """
         observation, _ = fresh_wire(fresh_wires.Task(task.model, self.noise, task.index))
         network = network_of(task.model, self.noise)
