@@ -82,7 +82,7 @@ def test_modes_of_tilted_leads_cross(index, omega):
     [(9, 10763), (9, 43697), (10, 1391), (10, 17354), (10, 23579), (10, 34188), (10, 36400)],
 )
 def test_leads_near_the_edge_of_a_wide_band(seed, index):
-    """Where λ cannot tell four modes apart, or rounding opened a closed lead: off by up to 0.005."""
+    """Where λ cannot tell four modes apart, or rounding opened a closed lead: up to 0.005 off."""
     wire, mu, B, theta = any_case(seed, index)
     omega = any_energy(seed, index)
     found = compiled.bare_conductance([wire], mu, B, omega, theta)[0, 0, 0, 0]
