@@ -216,7 +216,9 @@ def _toml(key, value):
 
 def test_two_claims_of_one_id_are_refused(tmp_path):
     file = tmp_path / "claims.toml"
-    file.write_text(2 * '[[claim]]\nid = "x"\nstatement = "s"\nwhere = "w"\nreason = "r"\n')
+    file.write_text(
+        2 * '[[claim]]\nid = "x"\nstatement = "s"\nwhere = "w"\nwhy = "w"\nreason = "r"\n'
+    )
     with pytest.raises(ArgumentError, match="x is there twice"):
         load_claims(file)
 
@@ -542,6 +544,7 @@ def test_each_claim_of_the_short_table_is_a_link_to_its_section():
         assert link[2] == re.sub(r"[^\w-]", "", link[1])  # as MyST and web hosts name a heading
         assert cells[1] in text
         assert cells[2] in text
+        assert bool(cells[4]) == (cells[3] != "reproduced")
         assert one.claim.statement in text
 
 

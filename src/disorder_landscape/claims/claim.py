@@ -14,6 +14,9 @@ from disorder_landscape.chain import REPOSITORY
 
 CLAIMS_FILE = REPOSITORY / "results" / "claims.toml"
 
+WORDS = 8
+"""Of a reason in the short table."""
+
 Sense = Literal["at least", "at most", "within", "exactly"]
 Verdict = Literal["reproduced", "differs", "not tested"]
 
@@ -88,6 +91,8 @@ class Claim(BaseModel):
     tolerance: Annotated[float, Field(ge=0)] = 0.0
     ours: tuple[Stored | Measured, ...] = ()
     """Where our values come from. The first of these that is there decides."""
+    why: str = ""
+    """The reason, in eight words at most, for the short table."""
     reason: str = ""
     """Why it differs, where it does; or why it is not tested, where there is nothing to test."""
     remark: str = ""
@@ -99,6 +104,10 @@ class Claim(BaseModel):
 
     @model_validator(mode="after")
     def _consistent(self) -> Claim:
+        if bool(self.why) != bool(self.reason) or len(self.why.split()) > WORDS:
+            raise ValueError(
+                f"'{self.id}' must say why in {WORDS} words at most, if it has a reason"
+            )
         if not self.ours:
             if not self.reason:
                 raise ValueError(f"'{self.id}' is not tested, so it must give the reason")

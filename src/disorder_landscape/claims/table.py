@@ -99,7 +99,7 @@ def rows(findings: Iterable[Finding]) -> list[tuple[str, ...]]:
     ]
 
 
-SUMMARY_COLUMNS = ("claim", "paper", "ours", "verdict")
+SUMMARY_COLUMNS = ("claim", "paper", "ours", "verdict", "why")
 
 
 def summary(findings: Iterable[Finding]) -> list[tuple[str, ...]]:
@@ -110,6 +110,7 @@ def summary(findings: Iterable[Finding]) -> list[tuple[str, ...]]:
             stated(one.claim),
             _deciding(one),
             one.verdict,
+            "" if one.verdict == "reproduced" else one.claim.why,
         )
         for one in findings
     ]
