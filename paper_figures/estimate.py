@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from functools import partial
 
 from disorder_landscape.chain import preset_run
 from disorder_landscape.dataset import shards
@@ -31,7 +30,7 @@ def main() -> None:
             WORKERS, cores()
         ) + TRAINING * config.realizations
     with compiled.threads_at_work(1):
-        announce_repeated("make figures", partial(simulate, config, range(1)), wires)
+        announce_repeated("make figures", lambda k: simulate(config, range(k, k + 1)), wires)
 
 
 if __name__ == "__main__":

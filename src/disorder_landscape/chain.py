@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 import xarray as xr
@@ -142,7 +141,7 @@ def generate(run: Run, workers: int) -> None:
     there = shards.status(config, run.dataset_folder).realizations
     with compiled.threads_at_work(1):
         wires = (config.realizations - there) / min(workers, cores())
-        announce_repeated("generate", partial(simulate, config, range(1)), wires)
+        announce_repeated("generate", lambda k: simulate(config, range(k, k + 1)), wires)
     with tqdm(
         total=config.realizations,
         unit=" realizations",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from itertools import count
 
 SECOND = 1.0
 """So long a pace is measured, in seconds, …"""
@@ -28,23 +29,21 @@ def announce(what: str, seconds: float, say: Callable[[str], object] = print) ->
 
 def announce_repeated(
     what: str,
-    action: Callable[[], object],
+    action: Callable[[int], object],
     times: float,
     say: Callable[[str], object] = print,
 ) -> None:
     """Say how long an action will take that is done so many times.
 
-    It is done for a second, or once, if all of it is soon over then.
+    It is done with 0, 1, … for a second, or once, if all of it is soon over then.
     """
-    begun, least = time.perf_counter(), float("inf")
-    while True:
-        start = time.perf_counter()
-        action()
-        now = time.perf_counter()
-        least = min(least, now - start)
-        if now - begun >= SECOND or least * times < WORTH_SAYING:
-            break
-    announce(what, least * times, say)
+    begun = time.perf_counter()
+    for done in count(1):
+        action(done - 1)
+        seconds = time.perf_counter() - begun
+        if seconds >= SECOND or seconds * times < WORTH_SAYING:
+            announce(what, seconds / done * times, say)
+            return
 
 
 class Pace:

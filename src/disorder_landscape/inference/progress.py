@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import partial
 
 from tqdm import tqdm
 
@@ -34,7 +33,7 @@ def announce_inference(observation: Observation) -> None:
     prior = observation.unknowns.prior.mean
     once, twice = WIRES_PER_UNKNOWN
     wires = prior.size * (once if is_surely_right(observation) else twice)
-    announce_repeated("infer", partial(observation.simulate, prior[None]), wires)
+    announce_repeated("infer", lambda k: observation.simulate(prior[None]), wires)
 
 
 @contextmanager
