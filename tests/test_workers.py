@@ -3,6 +3,7 @@
 import subprocess
 import sys
 import time
+from multiprocessing import active_children, get_context
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,21 @@ from disorder_landscape.workers import each_result
 
 def test_every_task_has_its_result():
     assert sorted(each_result(abs, [-3, 1, -2], 2)) == [1, 2, 3]
+
+
+def test_tasks_that_may_be_ended_do_not_keep_whoever_stops(tmp_path):
+    others = get_context("spawn").Process(target=time.sleep, args=(600,))
+    others.start()
+    waited = time.monotonic()
+    results = each_result(time.sleep, [0, 600, 600], 2, may_be_ended=True)
+    try:
+        next(results)
+        results.close()
+        assert time.monotonic() - waited < 300
+        assert active_children() == [others]
+    finally:
+        others.terminate()
+        others.join()
 
 
 @pytest.mark.skipif(not Path("/proc/self/cmdline").exists(), reason="asks Linux for processes")

@@ -7,7 +7,7 @@ import signal
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from multiprocessing import get_context, parent_process
+from multiprocessing import active_children, get_context, parent_process
 from typing import TypeVar
 
 Task = TypeVar("Task")
@@ -23,18 +23,26 @@ THREADS = (
 
 
 def each_result(
-    function: Callable[[Task], Result], tasks: Iterable[Task], workers: int
+    function: Callable[[Task], Result],
+    tasks: Iterable[Task],
+    workers: int,
+    may_be_ended: bool = False,
 ) -> Iterator[Result]:
     """Yield what a function returns for each task, as soon as it is there, in any order.
 
-    Whoever stops listening, or is interrupted, waits only for the tasks that are in hand.
+    Whoever stops listening, or is interrupted, waits only for the tasks that are in hand; not even
+    for those where they may be ended at any moment, since they go on later from where they were.
     """
+    before = set(active_children())
     with ProcessPoolExecutor(workers, get_context("spawn"), _start_worker) as pool:
         futures = [pool.submit(function, task) for task in tasks]
         try:
             for future in as_completed(futures):
                 yield future.result()
         except BaseException:
+            if may_be_ended:
+                for worker in set(active_children()) - before:
+                    worker.terminate()
             pool.shutdown(cancel_futures=True)
             raise
 

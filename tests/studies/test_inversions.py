@@ -95,7 +95,6 @@ def test_what_is_there_is_not_done_again(study, place):
 def test_a_table_keeps_what_others_add_to_it(study, place, monkeypatch):
     """Two runs that share a table, or one that was interrupted; and the order is the plan's."""
     path, done = study.table(place), []
-    monkeypatch.setattr(runner, "each_result", lambda function, tasks, _: map(function, tasks))
 
     def row_of(task):
         done.append(task)
@@ -118,8 +117,6 @@ def test_a_table_keeps_what_others_add_to_it(study, place, monkeypatch):
 
 
 def test_rows_of_an_interrupted_study_stay(study, place, monkeypatch):
-    monkeypatch.setattr(runner, "each_result", lambda function, tasks, _: map(function, tasks))
-
     def row_of(task):
         if task.index == 1:
             raise KeyboardInterrupt

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -90,6 +91,19 @@ def test_what_is_there_is_not_made_again(carried_out, place, monkeypatch):
     carry_out(study, place)
     assert read_table(table) == results
     assert made == [run.key for run in study.tasks[1:]]
+
+
+@pytest.mark.slow
+def test_two_at_a_time_come_to_the_same(carried_out, place, tmp_path):
+    """To rounding: sums over a batch depend on how many threads there are."""
+    study, results = carried_out
+    apart = replace(place, output=tmp_path, build=tmp_path / "build", workers=2)
+    carry_out(study, apart)
+    for one, other in zip(read_table(study.table(apart)), results, strict=True):
+        assert one.R2 == pytest.approx(other.R2, rel=1e-3)
+        assert replace(one, R2=0, delta_V=0, minutes=0) == replace(
+            other, R2=0, delta_V=0, minutes=0
+        )
 
 
 def test_the_command_writes_the_table(carried_out, place, tmp_path):

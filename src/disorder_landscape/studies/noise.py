@@ -25,7 +25,13 @@ from disorder_landscape.learning.scaling import (
 )
 from disorder_landscape.studies.fresh_wires import Noise
 from disorder_landscape.studies.study import Place
-from disorder_landscape.studies.trainings import PlannedRun, TrainedPlan, model_folder, trained
+from disorder_landscape.studies.trainings import (
+    PlannedRun,
+    TrainedPlan,
+    generate_datasets,
+    model_folder,
+    trained,
+)
 
 CHANNELS_WITH_ERRORS = {
     "all": CHANNELS,
@@ -57,6 +63,10 @@ class NoisePlan(TrainedPlan):
     def tasks(self) -> Sequence[Task]:
         """Return the networks."""
         return [Task(run.name, run.config.training.noise, run) for run in self.trainings()]
+
+    def prepare(self, tasks: Sequence[Task], place: Place) -> None:
+        """Generate the datasets."""
+        generate_datasets([task.run for task in tasks], place)
 
     def rows(self, task: Task, place: Place) -> list[dict[str, object]]:
         """Return R² over the errors of the test wires, by the channels that have them.

@@ -45,6 +45,7 @@ def carry_out(study: Study, place: Place, limit: int | None = None) -> Derived:
     chosen = missing[:limit]
     if chosen:
         done = len(study.tasks) - len(missing)
+        study.plan.prepare(chosen, place)
         bar = tqdm(total=len(study.tasks), initial=done, desc=study.name, unit=" tasks")
         pace = Pace(study.name, len(chosen), tqdm.write, warm_up=0)
         with bar:
@@ -73,9 +74,9 @@ def _complete(study: Study, place: Place, tasks: Sequence[Any], bar: Any, pace: 
 
 def _results(plan: Plan, place: Place, tasks: Sequence[Any]) -> Iterator[list[Row]]:
     function = partial(_rows, plan, place)
-    return (
-        each_result(function, tasks, place.workers) if plan.in_processes else map(function, tasks)
-    )
+    if place.workers == 1:
+        return map(function, tasks)
+    return each_result(function, tasks, place.workers, plan.tasks_resume)
 
 
 def _rows(plan: Plan, place: Place, task: Any) -> list[Row]:

@@ -53,14 +53,17 @@ class Plan(Part):
 
     keys: ClassVar[tuple[str, ...]]
     """Columns that tell the rows of a task from others'; attributes of a task, of the same name."""
-    in_processes: ClassVar[bool] = True
-    """Whether the tasks share out `Place.workers`; otherwise each task uses all of them."""
+    tasks_resume: ClassVar[bool] = False
+    """Whether a task that is ended at any moment goes on from there when it is asked for again."""
     keeps_others: ClassVar[bool] = True
     """Whether a row stays in the table whose task the plan no longer has."""
 
     @abstractmethod
     def tasks(self) -> Sequence[Any]:
         """Return the tasks, in the order of the table."""
+
+    def prepare(self, tasks: Sequence[Any], place: Place) -> None:
+        """Make what these tasks share, with all workers, before they are shared out."""
 
     @abstractmethod
     def rows(self, task: Any, place: Place) -> Iterable[Mapping[str, object]]:

@@ -13,7 +13,7 @@ from typing import Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from disorder_landscape.chain import dataset_folder
+from disorder_landscape.chain import Run, dataset_folder, generate
 from disorder_landscape.config import Config, checked
 from disorder_landscape.dataset import shards
 from disorder_landscape.studies.study import Part, Place, Plan
@@ -72,7 +72,7 @@ class TrainedPlan(Plan):
     """A configuration, from which each training differs."""
     runs: tuple[Runs, ...]
 
-    in_processes: ClassVar = False
+    tasks_resume: ClassVar = True
 
     def trainings(self) -> list[PlannedRun]:
         """Return the trainings, in the order of the file.
@@ -101,26 +101,42 @@ class TrainingsPlan(TrainedPlan):
         """Return the trainings."""
         return self.trainings()
 
+    def prepare(self, tasks: Sequence[PlannedRun], place: Place) -> None:
+        """Generate the datasets."""
+        generate_datasets(tasks, place)
+
     def rows(self, task: PlannedRun, place: Place) -> list[dict[str, object]]:
-        """Generate, train and score one training."""
+        """Train and score one network."""
         return [asdict(trained(task, place))]
 
 
+def generate_datasets(runs: Sequence[PlannedRun], place: Place) -> None:
+    """Make what is missing of the datasets of the trainings that are not finished."""
+    unfinished = [run for run in runs if not _is_finished(run, place)]
+    for config in {run.config.dataset: run.config for run in unfinished}.values():
+        # A run's dataset is beside its folder.
+        generate(Run(config.dataset.hash, config, place.build / "models"), place.workers)
+
+
 def trained(run: PlannedRun, place: Place) -> Result:
-    """Return what a training has come to, after what is missing of it."""
+    """Return what a training has come to, after what is missing of it; its dataset is there."""
     from disorder_landscape.learning.training import train
 
-    config, folder = run.config, model_folder(run, place.build)
-    if not (folder / "metrics.json").exists():
-        dataset = dataset_folder(config.dataset, place.build)
-        shards.generate(config.dataset, dataset, place.workers)
-        train(shards.read_shards(config.dataset, dataset), config, folder, "landscape study")
+    folder = model_folder(run, place.build)
+    if not _is_finished(run, place):
+        config = run.config
+        dataset = shards.read_shards(config.dataset, dataset_folder(config.dataset, place.build))
+        train(dataset, config, folder, "landscape study", progress=place.workers == 1)
     return _result(run, folder)
 
 
 def model_folder(run: PlannedRun, build: Path) -> Path:
     """Return the folder of a training's network."""
     return build / "models" / run.key
+
+
+def _is_finished(run: PlannedRun, place: Place) -> bool:
+    return (model_folder(run, place.build) / "metrics.json").exists()
 
 
 def _result(run: PlannedRun, folder: Path) -> Result:
