@@ -38,16 +38,15 @@ CHANNELS_WITH_ERRORS = {
     "local": ("G_LL", "G_RR"),
     "nonlocal": ("G_LR", "G_RL"),
 }
-NOISY = "noisy"
-"""Name of the runs whose test wires have the errors of their training wires, no others."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """One network: the name of its runs, and the errors in e²/h that it is trained with."""
+    """One network: the name of its runs, the errors in e²/h it is trained with, and its seed."""
 
     training: str
     training_noise: float
+    seed: int
     run: PlannedRun
 
 
@@ -58,11 +57,14 @@ class NoisePlan(TrainedPlan):
     noise: tuple[Noise, ...]
     """Standard deviations in e²/h."""
 
-    keys: ClassVar = ("training", "training_noise")
+    keys: ClassVar = ("training", "training_noise", "seed")
 
     def tasks(self) -> Sequence[Task]:
         """Return the networks."""
-        return [Task(run.name, run.config.training.noise, run) for run in self.trainings()]
+        return [
+            Task(run.name, run.config.training.noise, run.config.training.seed, run)
+            for run in self.trainings()
+        ]
 
     def prepare(self, tasks: Sequence[Task], place: Place) -> None:
         """Generate the datasets."""
@@ -77,19 +79,19 @@ class NoisePlan(TrainedPlan):
         config = task.run.config
         # A run's dataset is beside its folder.
         wires = read_test_set(Run(task.training, config, place.build / task.training))
-        noise = [task.training_noise] if task.training == NOISY else self.noise
-        R2 = r2_with_errors(load_model(model_folder(task.run, place.build)), wires, noise)
+        R2 = r2_with_errors(load_model(model_folder(task.run, place.build)), wires, self.noise)
         rows: list[dict[str, object]] = [
             {
                 "training": task.training,
                 "training_noise": task.training_noise,
+                "seed": task.seed,
                 "channels": channels,
                 "noise": one,
                 "R2": round(float(R2.sel(channels=channels, noise=one)), 4),
                 "minutes": None,
             }
             for channels in CHANNELS_WITH_ERRORS
-            for one in noise
+            for one in self.noise
         ]
         rows[0]["minutes"] = minutes
         return rows
