@@ -7,7 +7,13 @@ sys.path.insert(0, str(Path(__file__).parent / "extensions"))
 
 project = "The disorder landscape of Majorana nanowires"
 copyright = "the disorder-landscape authors, MIT licence"
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "paper_formulas"]
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "paper_formulas",
+    "wire_parameters",
+]
 
 html_theme = "furo"
 html_title = "Disorder landscape"

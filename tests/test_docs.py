@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import re
 import sys
+from dataclasses import fields
 
 from disorder_landscape.chain import REPOSITORY
+from disorder_landscape.model.parameters import Nanowire
 
 sys.path.insert(0, str(REPOSITORY / "docs" / "extensions"))  # as docs/conf.py does
 
 import paper_formulas
+import wire_parameters
 
 README = (REPOSITORY / "README.md").read_text("utf-8")
 
@@ -21,6 +24,15 @@ def test_every_stated_formula_has_a_function_and_a_test():
     cells = [[cell.strip() for cell in re.split(r"(?<!\\)\|", row)[1:-1]] for row in rows]
     assert [test for *_, test in cells] == [f"`{name}`" for name in stated]
     assert all(place and formula and function for place, formula, function, _ in cells)
+
+
+def test_every_parameter_of_a_wire_is_listed_with_its_range():
+    rows = wire_parameters.table().splitlines()[2:]
+    listed = [row.split("|")[1].strip(" `") for row in rows]
+    assert listed == [field.name for field in fields(Nanowire)][1:]
+    assert rows[2].endswith("| 10 | 0.1 to 100 nm |")
+    assert "V_Barrier on the first and on the last site" in rows[6]
+    assert "| 15, 15 | -1,000 to 1,000 meV |" in rows[6]
 
 
 def test_a_function_is_what_the_test_calls_of_the_package():

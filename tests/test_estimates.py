@@ -60,3 +60,14 @@ def test_what_is_repeated_takes_the_mean_time_of_a_second(clock, times, said, do
 
     announce_repeated("generate", action, times, heard.append)
     assert (heard, seen) == (said, done)
+
+
+def test_a_pace_of_several_at_a_time_waits_for_as_many(clock):
+    said = []
+    pace = Pace("study", 24, said.append, warm_up=0, at_a_time=2)
+    clock[0] += 274.0
+    pace.step()
+    assert not said
+    clock[0] += 6.0
+    pace.step()
+    assert said == ["study: about 56 minutes on this machine"]

@@ -57,12 +57,20 @@ class Pace:
     say : callable
     warm_up : int
         Steps that do not count: the first compile.
+    at_a_time : int
+        Steps that are taken side by side. As many must be over, since none tells the rate of all.
     """
 
     def __init__(
-        self, what: str, total: float, say: Callable[[str], object] = print, warm_up: int = 2
+        self,
+        what: str,
+        total: float,
+        say: Callable[[str], object] = print,
+        warm_up: int = 2,
+        at_a_time: int = 1,
     ) -> None:
-        self.what, self.total, self.say, self.warm_up = what, total, say, warm_up
+        self.what, self.total, self.say = what, total, say
+        self.warm_up, self.at_a_time = warm_up, at_a_time
         self._steps, self._done, self._said = 0, 0.0, False
         self._begun = time.perf_counter()
 
@@ -76,6 +84,6 @@ class Pace:
             self._begun = now
             return
         self._done += amount
-        if now - self._begun >= SECOND:
+        if now - self._begun >= SECOND and self._steps >= self.warm_up + self.at_a_time:
             announce(self.what, (now - self._begun) * self.total / self._done, self.say)
             self._said = True

@@ -155,7 +155,7 @@ def test_the_table_counts_wrong_answers_by_their_verdict(tmp_path):
     path = write_table(tmp_path / "rows.csv", rows)
     line = accuracy_table(path).splitlines()[-1]
     assert "five components and alpha, 0.01 | 40 | 40 | 1, 1, 1e+02" in line
-    assert "| 98 % | 1, 1 |" in line
+    assert "| 97.5 % | 1, 1 |" in line
 
 
 def test_the_table_of_more_components_has_a_row_for_each_noise(tmp_path):

@@ -73,7 +73,7 @@ def accuracy_table(path: Path = INVERSIONS) -> str:
                 f"{some['network_scaled_error'].mean():.2g}, {some['scaled_error'].mean():.1g}",
                 *_verdicts(some),
                 _within(some) if noise > 0 else "–",
-                f"{100 * (error < WITHIN).mean():.0f} %",
+                f"{100 * (error < WITHIN).mean():.3g} %",
                 _alpha_errors(some),
                 f"{some['seconds'].median():.0f}",
             )
@@ -101,7 +101,7 @@ def _verdicts(some: pd.DataFrame) -> tuple[str, str]:
     """Return how many converged, and how many are wrong: flagged, unflagged."""
     is_wrong, is_converged = wrong(some), some["verdict"] == CONVERGED
     return (
-        f"{100 * is_converged.mean():.0f} %",
+        f"{100 * is_converged.mean():.3g} %",
         f"{(is_wrong & ~is_converged).sum()}, {(is_wrong & is_converged).sum()}",
     )
 

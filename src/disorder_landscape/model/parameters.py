@@ -54,14 +54,18 @@ class Nanowire:
         Lattice spacing a in nm.
     g : float
         Landé g-factor.
-    gamma, delta0 : float
-        Coupling γ to the parent superconductor and its gap Δ₀, in meV (self-energy below Eq. S1).
+    gamma : float
+        Coupling γ to the parent superconductor in meV (self-energy below Eq. S1).
+    delta0 : float
+        Gap Δ₀ of the parent superconductor in meV.
     barrier : tuple of two floats
         V_Barrier on the first and on the last site, in meV (S-II.1).
     lead_mu : float
         Chemical potential of the leads in meV, a convention of the group's published codes.
-    lead_alpha, lead_g : float or None
-        Spin–orbit coupling and g-factor of the leads; None takes the wire's.
+    lead_alpha : float or None
+        Spin–orbit coupling of the leads in meV nm; None takes the wire's.
+    lead_g : float or None
+        Landé g-factor of the leads; None takes the wire's.
     dissipation : float
         Γ ≥ 0 in meV: −iΓ on each site broadens the levels, as if each leaked into a bath that
         takes no part in transport. The paper's wires have none.
@@ -93,7 +97,7 @@ class Nanowire:
                 checked[name] = number_in(name, value, low, high, unit)
         must = "be two numbers in meV, left and right"
         require(np.shape(self.barrier) == (2,), "barrier", must, f"it is {self.barrier!r}")
-        checked["barrier"] = tuple(number_in("barrier", b, -1e3, 1e3, "meV") for b in self.barrier)
+        checked["barrier"] = tuple(number_in("barrier", b, *BARRIER_RANGE) for b in self.barrier)
         for name, value in checked.items():
             object.__setattr__(self, name, value)
 
@@ -154,7 +158,9 @@ PARAMETER_RANGES = {
     "lead_g": (0.0, 100.0, ""),
     "dissipation": (0.0, 10.0, "meV"),
 }
-"""Range and unit within which each parameter of a wire is accepted."""
+"""Range and unit within which each parameter of a wire is accepted that is one number."""
+BARRIER_RANGE = (-1e3, 1e3, "meV")
+"""The same of the barriers."""
 
 
 def checked_potential(potential: ArrayLike, sites: int | None = None) -> FloatArray:

@@ -47,7 +47,8 @@ def carry_out(study: Study, place: Place, limit: int | None = None) -> Derived:
         done = len(study.tasks) - len(missing)
         study.plan.prepare(chosen, place)
         bar = tqdm(total=len(study.tasks), initial=done, desc=study.name, unit=" tasks")
-        pace = Pace(study.name, len(chosen), tqdm.write, warm_up=0)
+        at_a_time = min(place.workers, len(chosen))
+        pace = Pace(study.name, len(chosen), tqdm.write, warm_up=0, at_a_time=at_a_time)
         with bar:
             _complete(study, place, chosen, bar, pace)
     if study.missing(place):
