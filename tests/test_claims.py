@@ -27,6 +27,7 @@ from disorder_landscape.claims.conventions import conventions_table
 from disorder_landscape.claims.derived import DERIVED
 from disorder_landscape.claims.findings import stored_findings, with_measured
 from disorder_landscape.claims.sources import provenance
+from disorder_landscape.claims.value import Value, mean_over_seeds
 from disorder_landscape.cli import app
 from disorder_landscape.config import Config
 from disorder_landscape.learning.model import TrainedModel
@@ -175,9 +176,32 @@ def test_commands_that_do_not_exist_are_noticed(command, exists):
 )
 def test_each_sense_of_a_tolerance(sense, tolerance, reproduced, differing):
     one = claim(sense=sense, tolerance=tolerance)
-    assert [one.judge(value) for value in reproduced] == ["reproduced"] * len(reproduced)
-    assert [one.judge(value) for value in differing] == ["differs"] * len(differing)
-    assert one.judge(np.nan) == "differs"
+    assert {one.judge(Value(value)) for value in reproduced} == {"reproduced"}
+    assert {one.judge(Value(value)) for value in differing} == {"differs"}
+    assert one.judge(Value(np.nan)) == "differs"
+
+
+@pytest.mark.parametrize(
+    ("sense", "interval", "verdict"),
+    [
+        ("at least", (0.93, 0.951), "undecided"),
+        ("at least", (0.92, 0.944), "differs"),
+        ("within", (0.93, 0.951), "undecided"),
+        ("within", (0.93, 0.94), "differs"),
+        ("at most", (0.93, 0.96), "reproduced"),
+    ],
+)
+def test_an_interval_that_reaches_what_is_accepted_decides_nothing(sense, interval, verdict):
+    one = claim(sense=sense, tolerance=0.0 if sense != "within" else 0.005)
+    assert one.judge(Value(0.94, interval)) == verdict
+
+
+def test_seeds_make_an_interval():
+    found = mean_over_seeds([1.0, 2.0, 3.0])
+    assert found.value == 2.0
+    assert found.interval == pytest.approx((2 - 4.303 / np.sqrt(3), 2 + 4.303 / np.sqrt(3)), 1e-3)
+    assert mean_over_seeds([1.0, 2.0]).interval is None
+    assert found.scaled(2.0).interval == pytest.approx(2 * np.array(found.interval))
 
 
 @pytest.mark.parametrize(
@@ -368,7 +392,11 @@ def learning_curves_table(tmp_path):
 
 
 def test_the_fit_of_figure_2_is_derived_from_the_learning_curves(learning_curves_table):
-    of = {name: function(learning_curves_table) for name, function in list(DERIVED.items())[:6]}
+    found = {name: function(learning_curves_table) for name, function in list(DERIVED.items())[:6]}
+    of = {name: value.value for name, value in found.items()}
+    low, high = found["fig2_exponent"].interval
+    assert low == pytest.approx(high)  # the seeds are alike
+    assert of["fig2_exponent"] == pytest.approx(low)
     assert of["fig2_fit"] < 0.9999 < of["fig2_fit_without_ten"]
     assert of["fig2_exponent"] > 3
     assert of["fig2_prefactor"] < 2
@@ -385,9 +413,10 @@ def test_half_of_the_filters_is_derived_from_the_widths(tmp_path):
     ]
     write_table(tmp_path / "network_width.csv", trainings([*rows, (10, 100, 1.0, 0, 0.7)]))
     loss = DERIVED["loss_of_halving"](tmp_path / "network_width.csv")
-    assert loss == pytest.approx(0.006)
+    assert loss.value == pytest.approx(0.006)
+    assert loss.interval == pytest.approx((0.006, 0.006))  # seeds move both widths alike
     p = DERIVED["halving_independent_of_components"](tmp_path / "network_width.csv")
-    assert p == pytest.approx(42 / 120)  # orders of five whose |ρ| is at least 0.6
+    assert p.value == pytest.approx(42 / 120)  # orders of five whose |ρ| is at least 0.6
 
 
 @pytest.mark.parametrize("name", DERIVED)

@@ -11,6 +11,7 @@ from disorder_landscape.studies.crossings import (
     LearningCurve,
     fit_power_law,
     learning_curves,
+    resampled_needed,
 )
 from disorder_landscape.studies.trainings_table import Result
 
@@ -61,3 +62,17 @@ def test_results_become_curves_of_the_sizes_that_all_seeds_have():
     assert (three.components, five.components) == (3, 5)
     assert five.realizations.tolist() == [50, 100, 200]
     np.testing.assert_allclose(five.R2, [[0.05, 0.1, 0.2], [1.05, 1.1, 1.2]])
+
+
+def test_resampled_seeds_give_the_spread_of_a_mean():
+    """The standard deviation of a mean of three, drawn with replacement."""
+    logs = np.array([[1.0, 2.0, 6.0], [3.0, 3.0, 3.0]])
+    sizes = np.exp([0.0, 10.0])
+    low = 0.77 - logs / 10  # straight from there to one more, R² = 0.77 at exp(logs)
+    curves = [
+        LearningCurve(n, (0, 1, 2), sizes, np.column_stack([of, of + 1]))
+        for n, of in zip((3, 5), low, strict=True)
+    ]
+    drawn = np.log(resampled_needed(curves, 20_000))
+    np.testing.assert_allclose(drawn.mean(axis=0), [3.0, 3.0], atol=0.03)
+    np.testing.assert_allclose(drawn.std(axis=0), [np.std(logs[0]) / np.sqrt(3), 0.0], atol=0.03)

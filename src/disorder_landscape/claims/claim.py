@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import tomllib
 from functools import cache
 from pathlib import Path
@@ -11,6 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.chain import REPOSITORY
+from disorder_landscape.claims.value import Value
 
 CLAIMS_FILE = REPOSITORY / "results" / "claims.toml"
 
@@ -18,7 +20,7 @@ WORDS = 8
 """Of a reason in the short table."""
 
 Sense = Literal["at least", "at most", "within", "exactly"]
-Verdict = Literal["reproduced", "differs", "not tested"]
+Verdict = Literal["reproduced", "differs", "undecided", "not tested"]
 
 
 class ResultMissingError(Exception):
@@ -46,7 +48,7 @@ class Stored(_Table):
     column: str | None = None
     """CSV: the column of the value."""
     reduce: Literal["only", "mean", "median", "min", "max", "sum"] = "only"
-    """CSV: what becomes of several rows; "only" allows one."""
+    """CSV: what becomes of several rows; "only" allows one, "mean" takes those of other seeds."""
     derive: str | None = None
     """A study's table: the name of a function of `claims.derived`."""
     times: float = 1.0
@@ -125,22 +127,26 @@ class Claim(BaseModel):
         """The quick measurement, if it has one."""
         return next((source for source in self.ours if isinstance(source, Measured)), None)
 
-    def judge(self, value: float) -> Verdict:
+    def judge(self, ours: Value) -> Verdict:
         """Return whether a value of ours reproduces the paper's, within the tolerance.
 
-        A relative 1e-12 is allowed for, since 0.95 − 0.005 is no decimal number to a computer.
+        "Undecided" is a value that does not, but whose interval reaches those that would. A
+        relative 1e-12 is allowed for, since 0.95 − 0.005 is no decimal number to a computer.
         """
         if self.paper is None:
             return "not tested"
-        paper, rounding = self.paper, 1e-12 * abs(self.paper)
-        low, high = paper - self.tolerance - rounding, paper + self.tolerance + rounding
-        holds = {
-            "at least": value >= low,
-            "at most": value <= high,
-            "within": low <= value <= high,
-            "exactly": value == paper,
-        }[self.sense]
-        return "reproduced" if holds else "differs"
+        rounding = 1e-12 * abs(self.paper)
+        least, most = self.paper - self.tolerance - rounding, self.paper + self.tolerance + rounding
+        if self.sense == "exactly":
+            least = most = self.paper
+        if self.sense == "at least":
+            most = math.inf
+        if self.sense == "at most":
+            least = -math.inf
+        if least <= ours.value <= most:
+            return "reproduced"
+        low, high = ours.interval or (ours.value, ours.value)
+        return "undecided" if low <= most and least <= high else "differs"
 
 
 @cache

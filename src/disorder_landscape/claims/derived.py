@@ -15,52 +15,58 @@ import pandas as pd
 from scipy.stats import permutation_test, spearmanr
 
 from disorder_landscape.claims.claim import ResultMissingError
+from disorder_landscape.claims.value import Value, with_resampled
 from disorder_landscape.inference.verdict import CONVERGED
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.studies.components import THIRTY_COMPONENTS
 from disorder_landscape.studies.crossings import (
     R2_AIMED_AT,
-    fit_power_law,
     learning_curves,
+    power_laws,
     realizations_needed,
+    resampled_needed,
 )
 from disorder_landscape.studies.fresh_wires import wrong
 from disorder_landscape.studies.trainings_table import read_table
 
 SMALL_NOISE = 0.01
 """In e²/h."""
+DRAWS = 2000
+"""Of seeds, for an interval: its ends are then known to a tenth of its width."""
 FINE_TUNED = 10
 """Component count that the paper leaves out of its second fit of Fig. 2."""
 
 
-def fig2_prefactor(table: Path) -> float:
+def fig2_prefactor(table: Path) -> Value:
     """Return A of the realizations A·n^p that are needed for R² = 0.77."""
-    return fit_power_law(*_needed(table)).prefactor
+    return _of_needed(table, lambda n, needed: power_laws(n, needed)[0])
 
 
-def fig2_exponent(table: Path) -> float:
+def fig2_exponent(table: Path) -> Value:
     """Return p of the same."""
-    return fit_power_law(*_needed(table)).exponent
+    return _of_needed(table, lambda n, needed: power_laws(n, needed)[1])
 
 
-def fig2_fit(table: Path) -> float:
+def fig2_fit(table: Path) -> Value:
     """Return R² of this fit, on logarithmic axes."""
-    return fit_power_law(*_needed(table)).R2
+    return _of_needed(table, lambda n, needed: power_laws(n, needed)[2])
 
 
-def fig2_fit_without_ten(table: Path) -> float:
+def fig2_fit_without_ten(table: Path) -> Value:
     """Return R² of the fit to all component counts but ten."""
-    n, needed = _needed(table)
-    return fit_power_law(n[n != FINE_TUNED], needed[n != FINE_TUNED]).R2
+    return _of_needed(
+        table, lambda n, needed: power_laws(n[n != FINE_TUNED], needed[..., n != FINE_TUNED])[2]
+    )
 
 
-def fig2_power_minus_exponential(table: Path) -> float:
+def fig2_power_minus_exponential(table: Path) -> Value:
     """Return R² of this fit minus that of an exponential, both of log(realizations)."""
-    n, needed = _needed(table)
-    return fig2_fit(table) - fit_power_law(np.exp(n), needed).R2
+    return _of_needed(
+        table, lambda n, needed: power_laws(n, needed)[2] - power_laws(np.exp(n), needed)[2]
+    )
 
 
-def gain_of_last_step(table: Path) -> float:
+def gain_of_last_step(table: Path) -> Value:
     """Return by how much R² of ten components rises to the largest number of realizations.
 
     From the number before it; means over seeds.
@@ -72,56 +78,60 @@ def gain_of_last_step(table: Path) -> float:
     if len(R2) < 2:
         raise ResultMissingError(f"{table.name} has no two sizes of ten components")
     before, last = sorted(R2)[-2:]
-    return float(np.mean(R2[last]) - np.mean(R2[before]))
+    return Value(float(np.mean(R2[last]) - np.mean(R2[before])))
 
 
-def loss_of_halving(table: Path) -> float:
+def loss_of_halving(table: Path) -> Value:
     """Return the largest loss of R² by half of the filters, over component counts."""
-    return float(_losses_of_halving(table)[1].max())
+    losses = _losses_of_halving(table)
+    rng = np.random.default_rng(0)
+    means = [rng.choice(of, (DRAWS, of.size)).mean(axis=1) for of in losses.values()]
+    return with_resampled(max(of.mean() for of in losses.values()), np.max(means, axis=0))
 
 
-def halving_independent_of_components(table: Path) -> float:
+def halving_independent_of_components(table: Path) -> Value:
     """Return the p-value of Spearman's rank correlation of component counts with these losses.
 
     Of all orders that the losses could have, the share with as strong a correlation. Fewer than
     five counts could not show one at 5 %.
     """
-    n, loss = _losses_of_halving(table)
-    if n.size < 5:
+    losses = _losses_of_halving(table)
+    if len(losses) < 5:
         raise ResultMissingError(f"{table.name} has no five component counts")
+    n, loss = list(losses), [of.mean() for of in losses.values()]
     orders = permutation_test(
         (loss,), lambda x: spearmanr(n, x).statistic, permutation_type="pairings", n_resamples=10**4
     )
-    return float(orders.pvalue)
+    return Value(float(orders.pvalue))
 
 
-def true_answers(table: Path) -> float:
+def true_answers(table: Path) -> Value:
     """Return which part of the inversions that explain their data have found the true disorder.
 
     At noise up to SMALL_NOISE.
     """
     rows = _rows(table, "verdict")
     explained = rows[(rows["noise"] <= SMALL_NOISE) & (rows["verdict"] == CONVERGED)]
-    return float(1 - wrong(explained).mean())
+    return Value(float(1 - wrong(explained).mean()))
 
 
-def fixed_combinations(table: Path) -> float:
+def fixed_combinations(table: Path) -> Value:
     """Return the least part of the unknowns that data with SMALL_NOISE fix, over all settings."""
     rows = _rows(table, "fixed")
     some = rows[rows["noise"] == SMALL_NOISE]
-    return float((some["fixed"] / some["unknowns"]).min())
+    return Value(float((some["fixed"] / some["unknowns"]).min()))
 
 
-def thirty_components(table: Path) -> float:
+def thirty_components(table: Path) -> Value:
     """Return R² of V over the inversions of wires of THIRTY_COMPONENTS."""
     rows = _rows(table, "site_error")
     many = rows[rows["components"] == THIRTY_COMPONENTS]
     if many.empty:
         raise ResultMissingError(f"{table.name} has no wires of {THIRTY_COMPONENTS} components yet")
-    return float(1 - (many["site_error"] ** 2).sum() / (many["prior_error"] ** 2).sum())
+    return Value(float(1 - (many["site_error"] ** 2).sum() / (many["prior_error"] ** 2).sum()))
 
 
-DERIVED: dict[str, Callable[[Path], float]] = {
+DERIVED: dict[str, Callable[[Path], Value]] = {
     function.__name__: function
     for function in (
         fig2_prefactor,
@@ -148,27 +158,29 @@ def _rows(table: Path, column: str) -> pd.DataFrame:
     return rows
 
 
-def _needed(table: Path) -> tuple[FloatArray, FloatArray]:
-    """Return component counts and the realizations that each needs, as Fig. 2 shows them."""
-    n, needed = realizations_needed(learning_curves(read_table(table)))
+def _of_needed(table: Path, statistic: Callable[[FloatArray, FloatArray], FloatArray]) -> Value:
+    """Return a statistic of component counts and the realizations that each needs (Fig. 2)."""
+    curves = learning_curves(read_table(table))
+    n, needed = realizations_needed(curves)
     if len(n) < 3:
         raise ResultMissingError(f"{table.name} has no three crossings of R² = {R2_AIMED_AT}")
-    return n, needed
+    return with_resampled(statistic(n, needed), statistic(n, resampled_needed(curves, DRAWS)))
 
 
-def _losses_of_halving(table: Path) -> tuple[FloatArray, FloatArray]:
-    """Return component counts, and R² at their largest width minus R² at half of it.
+def _losses_of_halving(table: Path) -> dict[int, FloatArray]:
+    """Return R² at the largest width minus R² at half of it, over seeds, by component count.
 
-    Means over seeds; counts without half of their largest width are left out.
+    The same seed chooses the same wires. Counts without half of their largest width are left out.
     """
-    R2: dict[int, dict[float, list[float]]] = defaultdict(lambda: defaultdict(list))
+    R2: dict[int, dict[float, dict[int, float]]] = defaultdict(lambda: defaultdict(dict))
     for one in read_table(table):
-        R2[one.components][one.width_fraction].append(one.R2)
-    losses = {
-        components: np.mean(of[max(of)]) - np.mean(of[max(of) / 2])
-        for components, of in sorted(R2.items())
-        if max(of) / 2 in of
-    }
+        R2[one.components][one.width_fraction][one.seed] = one.R2
+    losses: dict[int, FloatArray] = {}
+    for components, of in sorted(R2.items()):
+        widest = max(of)
+        seeds = sorted(of[widest].keys() & of.get(widest / 2, {}).keys())
+        if seeds:
+            losses[components] = np.array([of[widest][s] - of[widest / 2][s] for s in seeds])
     if not losses:
         raise ResultMissingError(f"{table.name} has no width and half of it")
-    return np.array(list(losses), dtype=np.float64), np.array(list(losses.values()))
+    return losses

@@ -25,6 +25,8 @@ class Outcome:
     source: Stored | Measured
     value: float | None
     verdict: Verdict
+    interval: tuple[float, float] | None = None
+    """Of the value, over seeds."""
     missing: str = ""
     made: Mapping[str, Any] = field(default_factory=dict)
     """How the value was made: command, maybe machine, minutes, versions."""
@@ -113,7 +115,7 @@ def with_measured(findings: Iterable[Finding], again: Mapping[str, float]) -> tu
 def _outcome(claim: Claim, source: Stored | Measured, root: Path) -> Outcome:
     try:
         made = provenance(claim, source, root)
-        value = stored_value(claim, source, root)
+        ours = stored_value(claim, source, root)
     except ResultMissingError as missing:
-        return Outcome(source, None, "not tested", str(missing))
-    return Outcome(source, value, claim.judge(value), made=made)
+        return Outcome(source, None, "not tested", missing=str(missing))
+    return Outcome(source, ours.value, claim.judge(ours), ours.interval, made=made)

@@ -14,29 +14,30 @@ import csv
 import hashlib
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from statistics import fmean, median
+from statistics import median
 from typing import Any
 
 from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.claim import Claim, Measured, ResultMissingError, Stored
 from disorder_landscape.claims.derived import DERIVED
+from disorder_landscape.claims.value import Value, mean_over_seeds
 from disorder_landscape.files import read_json, write_json
 
 MEASURED_FILE = "results/measured.json"
 """What `make claims` has measured before, from the root of the repository."""
 
-_REDUCE: dict[str, Callable[[list[float]], float]] = {
-    "only": lambda values: values[0],
-    "mean": fmean,
-    "median": median,
-    "min": min,
-    "max": max,
-    "sum": sum,
+_REDUCE: dict[str, Callable[[list[float]], Value]] = {
+    "only": lambda values: Value(values[0]),
+    "mean": mean_over_seeds,
+    "median": lambda values: Value(median(values)),
+    "min": lambda values: Value(min(values)),
+    "max": lambda values: Value(max(values)),
+    "sum": lambda values: Value(sum(values)),
 }
 
 
-def stored_value(claim: Claim, source: Stored | Measured, root: Path = REPOSITORY) -> float:
+def stored_value(claim: Claim, source: Stored | Measured, root: Path = REPOSITORY) -> Value:
     """Return a value of ours from the repository.
 
     Raises
@@ -47,20 +48,21 @@ def stored_value(claim: Claim, source: Stored | Measured, root: Path = REPOSITOR
         If the file is there but damaged, or holds no such value.
     """
     if isinstance(source, Measured):
-        return float(_stored_measurement(claim, source, root)["value"])
+        return Value(float(_stored_measurement(claim, source, root)["value"]))
     path = root / source.file
     if not path.exists():
         raise ResultMissingError(f"there is no {source.file}")
     if source.key is not None:
-        value = _from_json(path, source)
+        value = Value(_from_json(path, source))
     elif source.column is not None:
         value = _from_csv(path, source, source.where)
-        value -= 0.0 if source.minus is None else _from_csv(path, source, source.minus)
+        if source.minus is not None:
+            value = Value(value.value - _from_csv(path, source, source.minus).value)
     else:
         must = f"name one of {', '.join(DERIVED)}"
         require(source.derive in DERIVED, "derive", must, f"it is '{source.derive}'")
         value = DERIVED[str(source.derive)](path)
-    return source.times * value
+    return value.scaled(source.times)
 
 
 def provenance(claim: Claim, source: Stored | Measured, root: Path = REPOSITORY) -> dict[str, Any]:
@@ -130,7 +132,7 @@ def _from_json(path: Path, source: Stored) -> float:
     return _number(content, source)
 
 
-def _from_csv(path: Path, source: Stored, where: Mapping[str, str | float]) -> float:
+def _from_csv(path: Path, source: Stored, where: Mapping[str, str | float]) -> Value:
     rows = _read_csv(path)
     for column in (*where, source.column):
         present = bool(rows) and column in rows[0]

@@ -10,7 +10,7 @@ from disorder_landscape.claims.claim import Claim
 from disorder_landscape.claims.findings import Finding, Outcome
 
 _SIGNS = {"at least": "≥", "at most": "≤", "exactly": "="}
-_MARKS = {"reproduced": "✓", "differs": "✗", "not tested": ""}
+_MARKS = {"reproduced": "✓", "differs": "✗", "undecided": "?", "not tested": ""}
 
 
 _POWER = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -58,9 +58,18 @@ def ours(finding: Finding, separator: str = "; ") -> str:
 
 
 def _value(outcome: Outcome, unit: str) -> str:
-    assert outcome.value is not None
     mark = _MARKS[outcome.verdict]
-    return f"{number(outcome.value)}{unit} {mark} ({outcome.source.scale})"
+    return f"{_with_interval(outcome)}{unit} {mark} ({outcome.source.scale})"
+
+
+def _with_interval(outcome: Outcome) -> str:
+    """Return a value and, in brackets, the interval that it has over seeds."""
+    assert outcome.value is not None
+    text = number(outcome.value)
+    if outcome.interval is None:
+        return text
+    low, high = (number(end, 3) for end in outcome.interval)
+    return f"{text} [{low}, {high}]"
 
 
 def verdict(finding: Finding) -> str:
@@ -75,8 +84,9 @@ def verdict(finding: Finding) -> str:
 def tally(findings: Iterable[Finding]) -> str:
     """Return how many claims have which verdict."""
     count = Counter(finding.verdict for finding in findings)
+    undecided = f"{count['undecided']} undecided, " if count["undecided"] else ""
     return (
-        f"{count['reproduced']} reproduced, {count['differs']} differ, "
+        f"{count['reproduced']} reproduced, {count['differs']} differ, {undecided}"
         f"{count['not tested']} not tested"
     )
 
@@ -141,7 +151,7 @@ def _deciding(finding: Finding) -> str:
     one = finding.deciding
     if one is None or one.value is None:
         return ""
-    return f"{number(one.value)} {finding.claim.unit or ''}".rstrip()
+    return f"{_with_interval(one)} {finding.claim.unit or ''}".rstrip()
 
 
 def measured_by(finding: Finding) -> str:
@@ -176,6 +186,7 @@ def as_json(findings: Iterable[Finding]) -> list[dict[str, Any]]:
                 {
                     "scale": outcome.source.scale,
                     "value": outcome.value,
+                    "interval": outcome.interval,
                     "verdict": outcome.verdict,
                     "missing": outcome.missing,
                 }

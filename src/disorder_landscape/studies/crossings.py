@@ -6,7 +6,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import linregress
 
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.studies.trainings_table import Result
@@ -82,10 +81,34 @@ def realizations_needed(curves: Iterable[LearningCurve]) -> tuple[FloatArray, Fl
     return np.array(list(needed)), np.array(list(needed.values()))
 
 
+def resampled_needed(curves: Iterable[LearningCurve], draws: int, seed: int = 0) -> FloatArray:
+    """Return `realizations_needed` for seeds drawn with replacement, shape (draw, count).
+
+    A bootstrap within each component count (Davison and Hinkley, Bootstrap Methods, 1997).
+    """
+    rng = np.random.default_rng(seed)
+    logs = [np.log(curve.crossings()) for curve in curves]
+    means = [
+        of[rng.integers(of.size, size=(draws, of.size))].mean(axis=1)
+        for of in logs
+        if np.isfinite(of).all()
+    ]
+    return np.asarray(np.exp(np.column_stack(means)))
+
+
 def fit_power_law(x: FloatArray, y: FloatArray) -> PowerLaw:
     """Fit a straight line on logarithmic axes, as Fig. 2 does."""
-    line = linregress(np.log(x), np.log(y))
-    return PowerLaw(float(np.exp(line.intercept)), float(line.slope), float(line.rvalue**2))
+    prefactor, exponent, R2 = power_laws(x, y)
+    return PowerLaw(float(prefactor), float(exponent), float(R2))
+
+
+def power_laws(x: FloatArray, Y: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return prefactor, exponent and R² of the same fit, shape (…) for Y of shape (…, count)."""
+    log_x, log_Y = np.log(x), np.log(Y)
+    u, v = log_x - log_x.mean(), log_Y - log_Y.mean(axis=-1, keepdims=True)
+    exponent = v @ u / (u @ u)
+    prefactor = np.exp(log_Y.mean(axis=-1) - exponent * log_x.mean())
+    return prefactor, exponent, exponent**2 * (u @ u) / (v**2).sum(axis=-1)
 
 
 def _crossing(log_size: FloatArray, R2: FloatArray, aim: float) -> float:
