@@ -23,6 +23,7 @@ from disorder_landscape.dataset.realizations import simulate
 from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
 from disorder_landscape.estimates import announce_repeated
 from disorder_landscape.machine import cores
+from disorder_landscape.model.parameters import NOISE_FLOOR
 from disorder_landscape.model.quantities import with_units
 from disorder_landscape.solver import compiled
 
@@ -150,6 +151,19 @@ def generate(run: Run, workers: int) -> None:
         initial=there,
     ) as bar:
         shards.generate(config, run.dataset_folder, workers, bar.update)
+    warning = accuracy_warning(shards.status(config, run.dataset_folder))
+    if warning:
+        print(warning)
+
+
+def accuracy_warning(now: shards.Status) -> str:
+    """Return a line about a dataset whose conductances may be less exact than measured ones."""
+    if now.largest_error is None or now.largest_error <= NOISE_FLOOR:
+        return ""
+    return (
+        f"The solver estimates errors of up to {now.largest_error:.2g} e²/h in this dataset, more "
+        f"than the {NOISE_FLOOR:g} of a measurement: the variable error says at which µ and B."
+    )
 
 
 def train(run: Run) -> None:

@@ -6,12 +6,13 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import xarray as xr
 
-from disorder_landscape import ArgumentError, conductance
+from disorder_landscape import ArgumentError, chain, conductance
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset import realizations, shards, store
 from disorder_landscape.model.quantities import CONDUCTANCES
@@ -97,6 +98,33 @@ def test_a_realization_is_what_the_simulator_says(made):
         assert (file.first_index, file.last_index, file.seed) == (3, 5, 5)
         assert file.config_hash == CONFIG.hash
         assert file.version_numpy == np.__version__
+
+
+def test_shards_keep_what_the_solver_says_of_its_error(made):
+    shard = store.read_dataset(shards.shard_path(made, 0), ["error", "energies"])
+    one = realizations.realization(CONFIG, 1)
+    G = conductance(one.wire, CONFIG.mu, CONFIG.B, CONFIG.bias)
+    np.testing.assert_allclose(shard.error[1], G.error, rtol=1e-6)
+    np.testing.assert_array_equal(shard.energies[1], G.energies)
+    assert shard.error.dims == shard.energies.dims == ("realization", "mu", "B")
+    every = [store.read_dataset(path) for path in made.iterdir()]
+    largest = max(float(one.error.max()) for one in every)
+    assert shards.status(CONFIG, made).largest_error == pytest.approx(largest)
+
+
+def test_an_average_over_a_grid_states_no_error(tmp_path):
+    config = CONFIG.model_copy(update={"energy_spacing": 1e-3, "realizations": 2})
+    shards.generate(config, tmp_path)
+    assert shards.status(config, tmp_path).largest_error is None
+    assert "error" not in store.read_dataset(shards.shard_path(tmp_path, 0))
+
+
+def test_a_dataset_that_is_less_exact_than_a_measurement_says_so(made):
+    now = shards.status(CONFIG, made)
+    assert chain.accuracy_warning(now) == ""
+    assert chain.accuracy_warning(replace(now, largest_error=None)) == ""
+    said = chain.accuracy_warning(replace(now, largest_error=0.02))
+    assert "errors of up to 0.02 e²/h in this dataset, more than the 0.001 of a" in said
 
 
 def test_shards_of_another_configuration_are_refused_and_kept(made, tmp_path):

@@ -21,6 +21,8 @@ def status(config: ConfigFile, build: Build = Path("build")) -> None:
         f"dataset     {now.realizations} of {now.realizations_in_all} realizations in "
         f"{now.shards} of {now.shards_in_all} shards, {now.bytes / 1e6:.1f} MB"
     )
+    if now.largest_error is not None:
+        print(f"accuracy    estimated errors of up to {now.largest_error:.2g} e²/h")
     begun = run.model_folder.exists()
     print(f"model       {'trained' if run.is_trained else 'begun' if begun else 'not begun'}")
     print(f"evaluation  {'there' if run.evaluation_file.exists() else 'not there'}")

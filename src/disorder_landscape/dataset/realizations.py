@@ -14,6 +14,9 @@ from disorder_landscape.model.parameters import FloatArray, Nanowire
 from disorder_landscape.model.quantities import CONDUCTANCES, with_units
 from disorder_landscape.observables.conductance import conductance
 
+STORED_AS = {**dict.fromkeys((*CONDUCTANCES, "error"), np.float32), "energies": np.int32}
+"""What files keep of the conductances, and in which precision."""
+
 
 @dataclass(frozen=True, eq=False)
 class Realization:
@@ -56,13 +59,13 @@ def simulate(config: DatasetConfig, indices: Iterable[int]) -> xr.Dataset:
     xarray.Dataset
         G_LL, G_RR, G_LR, G_RL (realization, mu, B, bias) as float32 in e²/h, components
         (realization, component) and potential (realization, site) in meV, alpha (realization) in
-        meV nm.
+        meV nm. Exact averages also have what `conductance` says of them: error (realization, mu, B)
+        as float32 in e²/h, and energies (realization, mu, B).
     """
     index = np.array(list(indices))
     drawn = [realization(config, i) for i in index]
-    G = np.empty((len(drawn), config.mu_points, config.B_points, len(config.bias), 4), np.float32)
-    for i, one in enumerate(drawn):
-        of_wire = conductance(
+    solved = [
+        conductance(
             one.wire,
             config.mu,
             config.B,
@@ -70,10 +73,17 @@ def simulate(config: DatasetConfig, indices: Iterable[int]) -> xr.Dataset:
             config.temperature,
             energy_spacing=config.energy_spacing,
         )
-        G[i] = np.stack([of_wire[name] for name in CONDUCTANCES], axis=-1)
-    dims = ("realization", "mu", "B", "bias")
+        for one in drawn
+    ]
+    numbers = {name: STORED_AS[name] for name in STORED_AS if name in solved[0]}
     data = {
-        **{name: (dims, G[..., i]) for i, name in enumerate(CONDUCTANCES)},
+        **{
+            name: (
+                ("realization", *solved[0][name].dims),
+                np.stack([of_wire[name].to_numpy().astype(kind) for of_wire in solved]),
+            )
+            for name, kind in numbers.items()
+        },
         "components": (("realization", "component"), np.array([one.components for one in drawn])),
         "alpha": ("realization", np.array([one.alpha for one in drawn])),
         "potential": (("realization", "site"), np.array([one.potential for one in drawn])),

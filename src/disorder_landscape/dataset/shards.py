@@ -21,18 +21,23 @@ from disorder_landscape.model.quantities import CONDUCTANCES
 from disorder_landscape.workers import each_result
 
 VARIABLES = (*CONDUCTANCES, "components", "alpha", "potential")
+"""What is read back; `error` and `energies` of the solver are in most shards, for whoever asks."""
+LARGEST_ERROR = "largest_error"
+"""Attribute of a shard: the largest of the solver's error estimates in e²/h."""
 Progress = Callable[[int], None]
 
 
 @dataclass(frozen=True)
 class Status:
-    """How much of a dataset is there: shards, realizations, bytes."""
+    """How much of a dataset is there: shards, realizations, bytes; and how exact it is."""
 
     shards: int
     shards_in_all: int
     realizations: int
     realizations_in_all: int
     bytes: int
+    largest_error: float | None
+    """Of the solver's estimates in e²/h; none if no shard has any."""
 
     @property
     def complete(self) -> bool:
@@ -69,7 +74,10 @@ def make_shard(config: DatasetConfig, folder: Path, shard: int) -> int:
         "first_index": indices.start,
         "last_index": indices.stop - 1,
     }
-    write_dataset(simulate(config, indices), shard_path(folder, shard), attrs)
+    made = simulate(config, indices)
+    if "error" in made:
+        attrs[LARGEST_ERROR] = float(made["error"].max())
+    write_dataset(made, shard_path(folder, shard), attrs)
     return len(indices)
 
 
@@ -81,12 +89,32 @@ def shard_is_done(config: DatasetConfig, folder: Path, shard: int) -> bool:
     ArgumentError
         If the file is damaged, or of another configuration: it is refused, never overwritten.
     """
+    return _inspect(config, folder, shard)[0]
+
+
+def status(config: DatasetConfig, folder: Path) -> Status:
+    """Return how much of the dataset is there."""
+    found = {k: _inspect(config, folder, k) for k in range(shard_count(config))}
+    shards = {k: error for k, (is_done, error) in found.items() if is_done}
+    return Status(
+        shards=len(shards),
+        shards_in_all=shard_count(config),
+        realizations=sum(len(shard_indices(config, k)) for k in shards),
+        realizations_in_all=config.realizations,
+        bytes=sum(shard_path(folder, k).stat().st_size for k in shards),
+        largest_error=max((error for error in shards.values() if error is not None), default=None),
+    )
+
+
+def _inspect(config: DatasetConfig, folder: Path, shard: int) -> tuple[bool, float | None]:
+    """Return whether a shard is done, and the largest error that it states."""
     path = shard_path(folder, shard)
     if not path.exists():
-        return False
+        return False, None
     try:
         with h5py.File(path) as file:
             made_with, held = file.attrs.get("config_hash"), len(file["realization"])
+            error = file.attrs.get(LARGEST_ERROR)
     except (OSError, KeyError, RuntimeError):
         must = "hold only whole shards"
         raise ArgumentError("dataset", must, f"'{path}' is damaged; delete it") from None
@@ -94,19 +122,7 @@ def shard_is_done(config: DatasetConfig, folder: Path, shard: int) -> bool:
     require(
         made_with == config.hash, "dataset", must, f"'{path}' was made with another configuration"
     )
-    return held >= len(shard_indices(config, shard))
-
-
-def status(config: DatasetConfig, folder: Path) -> Status:
-    """Return how much of the dataset is there."""
-    shards = [k for k in range(shard_count(config)) if shard_is_done(config, folder, k)]
-    return Status(
-        shards=len(shards),
-        shards_in_all=shard_count(config),
-        realizations=sum(len(shard_indices(config, k)) for k in shards),
-        realizations_in_all=config.realizations,
-        bytes=sum(shard_path(folder, k).stat().st_size for k in shards),
-    )
+    return held >= len(shard_indices(config, shard)), None if error is None else float(error[0])
 
 
 def generate(
@@ -152,7 +168,7 @@ def read_shards(config: DatasetConfig, folder: Path, first: int = 0) -> xr.Datas
     require(now.complete, "dataset", must, f"'{folder}' holds {now.realizations}")
     first_shard = first // config.shard_size
     parts = [
-        read_dataset(shard_path(folder, k), VARIABLES).isel(
+        read_dataset(shard_path(folder, k), VARIABLES)[list(VARIABLES)].isel(
             realization=slice(len(shard_indices(config, k)))
         )
         for k in range(first_shard, shard_count(config))

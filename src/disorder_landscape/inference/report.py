@@ -9,8 +9,7 @@ from disorder_landscape.arguments import numbers_of
 from disorder_landscape.config import TrainingConfig
 from disorder_landscape.inference.problem.observation import noise_of_channels, one_or_each
 from disorder_landscape.inference.verdict import CONVERGED
-from disorder_landscape.learning.scaling import NOISE_FLOOR
-from disorder_landscape.model.parameters import FloatArray
+from disorder_landscape.model.parameters import NOISE_FLOOR, FloatArray
 from disorder_landscape.model.quantities import CONDUCTANCES
 
 UNTRAINED = 2.0

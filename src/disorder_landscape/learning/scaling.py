@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from sklearn.preprocessing import StandardScaler
 
 from disorder_landscape.arguments import require
-from disorder_landscape.model.parameters import FloatArray
+from disorder_landscape.model.parameters import NOISE_FLOOR, FloatArray
 from disorder_landscape.model.quantities import AXES, CONDUCTANCES
 
 ConductanceArray = NDArray[np.float32]
@@ -21,8 +21,6 @@ CHANNELS = CONDUCTANCES
 """The network's input channels, in this order: the "4 different measurements" of S-II.2."""
 COMPRESSION: ConductanceArray = np.array([0.2, 0.2, 0.003, 0.003], dtype=np.float32)
 """Scale s in e²/h of asinh(G/s) per channel: typical local and nonlocal conductances."""
-NOISE_FLOOR = 0.001
-"""Error of a measured conductance in e²/h, the least that the paper's main text reckons with."""
 ROWS_AT_A_TIME = 2000
 """Realizations that are compressed at a time, for memory's sake."""
 

@@ -36,6 +36,8 @@ MU_MAX = 0.6
 """Largest chemical potential of the grid in meV (S-II.1)."""
 B_MAX = 0.8
 """Largest magnetic field of the grid in T (S-II.1)."""
+NOISE_FLOOR = 0.001
+"""Error of a measured conductance in e²/h, the least that the paper's main text reckons with."""
 
 
 @dataclass(frozen=True, eq=False)

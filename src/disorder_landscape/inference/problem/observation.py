@@ -12,8 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from disorder_landscape.arguments import number_in, require
 from disorder_landscape.inference.problem.measurement import Measurement, simulated
 from disorder_landscape.inference.problem.unknowns import Unknowns
-from disorder_landscape.learning.scaling import NOISE_FLOOR
-from disorder_landscape.model.parameters import FloatArray
+from disorder_landscape.model.parameters import NOISE_FLOOR, FloatArray
 from disorder_landscape.model.quantities import CONDUCTANCES
 from disorder_landscape.solver import compiled
 
