@@ -17,8 +17,8 @@ import xarray as xr
 from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
+from disorder_landscape.executors.local import each_result
 from disorder_landscape.model.quantities import CONDUCTANCES
-from disorder_landscape.workers import each_result
 
 VARIABLES = (*CONDUCTANCES, "components", "alpha", "potential")
 """What is read back; `error` and `energies` of the solver are in most shards, for whoever asks."""

@@ -12,11 +12,11 @@ from tqdm import tqdm
 
 from disorder_landscape.dataset.store import provenance
 from disorder_landscape.estimates import Pace
+from disorder_landscape.executors.local import each_result
 from disorder_landscape.files import replacing, write_json
 from disorder_landscape.studies.plan import Study
 from disorder_landscape.studies.rows import Row, as_text, read_rows, stored_numbers, write_rows
 from disorder_landscape.studies.study import Derived, Place, Plan
-from disorder_landscape.workers import each_result
 
 WRITTEN_EVERY = 5.0
 """Seconds after which rows are written; those of an interrupted study are, too."""

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from disorder_landscape.workers import each_result
+from disorder_landscape.executors.local import each_result
 
 
 def test_every_task_has_its_result():
@@ -39,9 +39,7 @@ def test_workers_end_with_a_killed_parent(tmp_path):
         f"new = pathlib.Path({str(tmp_path / 'new')!r});"
         f"new.write_text(str(os.getpid())); new.rename({str(started)!r}); time.sleep(600)"
     )
-    script = (
-        f"from disorder_landscape.workers import each_result;list(each_result(exec, [{task!r}], 1))"
-    )
+    script = f"from disorder_landscape.executors.local import each_result;list(each_result(exec, [{task!r}], 1))"
     parent = subprocess.Popen([sys.executable, "-c", script])
 
     def goes_on():
