@@ -22,7 +22,8 @@ from disorder_landscape.dataset import shards
 from disorder_landscape.dataset.realizations import simulate
 from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
 from disorder_landscape.estimates import announce_repeated
-from disorder_landscape.machine import cores
+from disorder_landscape.executors.executor import WHOLE, Executor, Share
+from disorder_landscape.executors.local import LocalProcesses
 from disorder_landscape.model.parameters import NOISE_FLOOR
 from disorder_landscape.model.quantities import with_units
 from disorder_landscape.solver import compiled
@@ -136,21 +137,19 @@ def preset_run(preset: str, build: str | Path = "build", model: str = FIVE) -> R
     return Run(model, config, Path(build) / SHIPPED / model, shipped=True)
 
 
-def generate(run: Run, workers: int) -> None:
-    """Make what is missing of the run's dataset, with a progress bar."""
+def generate(run: Run, executor: Executor, share: Share = WHOLE) -> None:
+    """Make what is missing of the run's dataset, or of a share of it, with a progress bar."""
     config = run.config.dataset
-    there = shards.status(config, run.dataset_folder).realizations
+    sizes = [len(shards.shard_indices(config, k)) for k in range(shards.shard_count(config))]
+    missing = shards.missing_shards(config, run.dataset_folder, share)
+    wires, in_all = sum(sizes[k] for k in missing), sum(share.of(sizes))
     with compiled.threads_at_work(1):
-        wires = (config.realizations - there) / min(workers, cores())
-        announce_repeated("generate", lambda k: simulate(config, range(k, k + 1)), wires)
+        per_core = wires / executor.at_a_time
+        announce_repeated("generate", lambda k: simulate(config, range(k, k + 1)), per_core)
     with tqdm(
-        total=config.realizations,
-        unit=" realizations",
-        desc="generate",
-        smoothing=0.1,
-        initial=there,
+        total=in_all, unit=" realizations", desc="generate", smoothing=0.1, initial=in_all - wires
     ) as bar:
-        shards.generate(config, run.dataset_folder, workers, bar.update)
+        shards.generate(config, run.dataset_folder, executor, bar.update, share)
     warning = accuracy_warning(shards.status(config, run.dataset_folder))
     if warning:
         print(warning)
@@ -222,7 +221,7 @@ def evaluate(run: Run) -> xr.Dataset:
 def evaluation(run: Run, workers: int = 2) -> xr.Dataset:
     """Return what `evaluate` gives for a run, after whatever is missing of its chain."""
     if not run.shipped and not run.is_trained:
-        generate(run, workers)
+        generate(run, LocalProcesses(workers))
         train(run)
     if run.evaluation_file.exists():
         stored = read_dataset(run.evaluation_file, ("components_predicted",))

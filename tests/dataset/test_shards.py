@@ -15,6 +15,7 @@ import xarray as xr
 from disorder_landscape import ArgumentError, chain, conductance
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset import realizations, shards, store
+from disorder_landscape.executors.local import LocalProcesses
 from disorder_landscape.model.quantities import CONDUCTANCES
 
 CONFIG = DatasetConfig(realizations=11, sites=30, mu_points=3, B_points=4, shard_size=3, seed=5)
@@ -32,7 +33,7 @@ def made(tmp_path_factory):
 
 
 def test_two_workers_write_the_same_bytes(made, tmp_path):
-    shards.generate(CONFIG, tmp_path, workers=2)
+    shards.generate(CONFIG, tmp_path, LocalProcesses(2))
     assert digests(tmp_path) == digests(made)
 
 
@@ -188,3 +189,13 @@ def test_a_full_disk_leaves_what_was_there(tmp_path):
     assert done.returncode != 0
     assert "ArgumentError: Argument folder must be a place to write to" in done.stderr
     assert not list(tmp_path.iterdir())
+
+
+def test_shares_of_a_dataset_make_the_same_bytes(made, tmp_path):
+    """Whatever is there already, and though two jobs know nothing of each other."""
+    shards.make_shard(CONFIG, tmp_path, 2)
+    said = []
+    for number in (3, 1, 2):
+        shards.generate(CONFIG, tmp_path, progress=said.append, share=Share(number, 3))
+    assert digests(tmp_path) == digests(made)
+    assert said == [3, 2, 3]  # shards 0 and 3, then 1; shard 2 is there

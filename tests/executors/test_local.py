@@ -8,18 +8,18 @@ from pathlib import Path
 
 import pytest
 
-from disorder_landscape.executors.local import each_result
+from disorder_landscape.executors.local import LocalProcesses
 
 
 def test_every_task_has_its_result():
-    assert sorted(each_result(abs, [-3, 1, -2], 2)) == [1, 2, 3]
+    assert sorted(LocalProcesses(2).each_result(abs, [-3, 1, -2])) == [1, 2, 3]
 
 
 def test_tasks_that_may_be_ended_do_not_keep_whoever_stops(tmp_path):
     others = get_context("spawn").Process(target=time.sleep, args=(600,))
     others.start()
     waited = time.monotonic()
-    results = each_result(time.sleep, [0, 600, 600], 2, may_be_ended=True)
+    results = LocalProcesses(2).each_result(time.sleep, [0, 600, 600], may_be_ended=True)
     try:
         next(results)
         results.close()
@@ -39,7 +39,10 @@ def test_workers_end_with_a_killed_parent(tmp_path):
         f"new = pathlib.Path({str(tmp_path / 'new')!r});"
         f"new.write_text(str(os.getpid())); new.rename({str(started)!r}); time.sleep(600)"
     )
-    script = f"from disorder_landscape.executors.local import each_result;list(each_result(exec, [{task!r}], 1))"
+    script = (
+        "from disorder_landscape.executors.local import LocalProcesses;"
+        f"list(LocalProcesses(2).each_result(exec, [{task!r}]))"
+    )
     parent = subprocess.Popen([sys.executable, "-c", script])
 
     def goes_on():

@@ -97,7 +97,7 @@ def test_the_study_is_written_and_goes_on_where_it_stopped(tmp_path, monkeypatch
     """In the folder of these very solvers, and what follows beside the other results."""
     (tmp_path / "few.toml").write_text(PLAN)
     study = load_study(tmp_path / "few.toml")
-    place, asked = Place(tmp_path / "out", tmp_path / "build", 1), []
+    place, asked = Place(tmp_path / "out", tmp_path / "build"), []
 
     rows_of = type(study.plan).rows
 

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -19,6 +20,7 @@ from disorder_landscape.claims.study_tables import (
     unmodelled_table,
 )
 from disorder_landscape.config import DatasetConfig
+from disorder_landscape.executors.executor import Share
 from disorder_landscape.inference.invert import usable_network_features
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.measurement import empty_measurement
@@ -78,7 +80,7 @@ def study(tmp_path):
 
 @pytest.fixture
 def place(tmp_path):
-    return Place(tmp_path, tmp_path / "build", 1)
+    return Place(tmp_path, tmp_path / "build")
 
 
 def test_what_is_there_is_not_done_again(study, place):
@@ -114,6 +116,26 @@ def test_a_table_keeps_what_others_add_to_it(study, place, monkeypatch):
     assert rows[-1]["index"] == "7"
     made = json.loads(path.with_suffix(".json").read_text())["provenance"]
     assert made["sha256"] == hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def test_shares_of_a_study_are_gathered(study, place, monkeypatch):
+    """Each in a table of its own, which the whole study takes and does not repeat."""
+    done = []
+
+    def row_of(task):
+        done.append(task)
+        return row(task.index, model=task.model, noise=task.noise)
+
+    monkeypatch.setattr(inversions, "inversion_row", row_of)
+    for number in (3, 1):
+        runner.carry_out(study, replace(place, share=Share(number, 5)))
+    assert not study.table(place).exists()
+    assert len(study.tables_of_shares(place)) == 2
+    assert len(study.missing(place)) == 12 - 5
+    runner.carry_out(study, place)
+    assert len(done) == len(set(done)) == 12
+    assert len(read_rows(study.table(place))) == 12
+    assert not [path for path in place.output.iterdir() if "share" in path.name]
 
 
 def test_rows_of_an_interrupted_study_stay(study, place, monkeypatch):
@@ -173,7 +195,7 @@ def test_the_table_of_more_components_has_a_row_for_each_noise(tmp_path):
     with pytest.raises(ResultMissingError, match="30 components"):
         thirty_components(path)
     pd.DataFrame([one | {"components": 30} for one in rows]).to_csv(path, index=False)
-    assert thirty_components(path) == pytest.approx(1 - 0.01 / 0.48, rel=1e-3)
+    assert thirty_components(path).value == pytest.approx(1 - 0.01 / 0.48, rel=1e-3)
 
 
 def test_the_network_of_thirty_components_knows_something_of_fresh_wires():
@@ -229,11 +251,11 @@ def test_claims_of_uniqueness(information, tmp_path):
     rows[0] |= {"site_error": 0.1}
     rows[1] |= {"site_error": 0.1, "verdict": NOT_CONVERGED}
     write_table(path, rows)
-    assert true_answers(path) == pytest.approx(6 / 7)
+    assert true_answers(path).value == pytest.approx(6 / 7)
     table = pd.DataFrame([one for rows in information.values() for one in rows])
     table.loc[table["noise"] == 0.01, "fixed"] = [4, 3]
     table.to_csv(path, index=False)
-    assert fixed_combinations(path) == 0.75
+    assert fixed_combinations(path).value == 0.75
 
 
 def test_coverage_of_normal_deviations_is_nominal():

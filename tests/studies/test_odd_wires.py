@@ -31,7 +31,7 @@ def test_cases_are_drawn_from_their_index():
 
 
 def test_the_search_goes_on_where_it_stopped_and_finds_nothing(tmp_path):
-    plan, place = tmp_path / "few.toml", Place(tmp_path / "out", tmp_path / "build", 1)
+    plan, place = tmp_path / "few.toml", Place(tmp_path / "out", tmp_path / "build")
     plan.write_text(PLAN)
     found = carry_out(load_study(plan), place)
     assert found.passed

@@ -108,7 +108,7 @@ def test_the_studies_of_this_repository_can_be_read(name):
 @pytest.mark.parametrize("name", sorted(set(study_names()) - {"accuracy", "odd_wires"}))
 def test_the_tables_of_this_repository_are_complete(name, tmp_path):
     """Those two leave numbers of a table that lies in build."""
-    assert not load_study(name).missing(Place(REPOSITORY / "results", tmp_path, 1))
+    assert not load_study(name).missing(Place(REPOSITORY / "results", tmp_path))
 
 
 def test_networks_without_noise_are_those_of_the_recipes():

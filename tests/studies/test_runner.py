@@ -11,6 +11,7 @@ import pytest
 from typer.testing import CliRunner
 
 from disorder_landscape.cli import app
+from disorder_landscape.executors.local import LocalProcesses
 from disorder_landscape.studies import trainings
 from disorder_landscape.studies.plan import load_study
 from disorder_landscape.studies.runner import carry_out
@@ -47,7 +48,7 @@ set = { training = { mirror = true, compress_inputs = true, noise = 0.1 } }
 @pytest.fixture(scope="module")
 def place(tmp_path_factory):
     folder = tmp_path_factory.mktemp("study")
-    return Place(folder, folder / "build", 1)
+    return Place(folder, folder / "build")
 
 
 @pytest.fixture(scope="module")
@@ -97,7 +98,7 @@ def test_what_is_there_is_not_made_again(carried_out, place, monkeypatch):
 def test_two_at_a_time_come_to_the_same(carried_out, place, tmp_path):
     """To rounding: sums over a batch depend on how many threads there are."""
     study, results = carried_out
-    apart = replace(place, output=tmp_path, build=tmp_path / "build", workers=2)
+    apart = replace(place, output=tmp_path, build=tmp_path / "build", executor=LocalProcesses(2))
     carry_out(study, apart)
     for one, other in zip(read_table(study.table(apart)), results, strict=True):
         assert one.R2 == pytest.approx(other.R2, rel=1e-3)

@@ -13,6 +13,9 @@ import typer
 ConfigFile = Annotated[Path, typer.Option("--config", "-c", help="TOML file of the run.")]
 Build = Annotated[Path, typer.Option(help="Folder of the results, one subfolder per run.")]
 Workers = Annotated[int, typer.Option(min=1, max=1024, help="Processes, one thread each.")]
+ShareOfTasks = Annotated[
+    str, typer.Option("--share", help="Like 3/8: every eighth task only, from the third on.")
+]
 
 
 @contextmanager

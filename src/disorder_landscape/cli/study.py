@@ -8,7 +8,9 @@ from typing import Annotated
 import typer
 
 from disorder_landscape.arguments import ArgumentError
-from disorder_landscape.cli.options import Build, Workers, resumable
+from disorder_landscape.cli.options import Build, ShareOfTasks, Workers, resumable
+from disorder_landscape.executors.executor import parse_share
+from disorder_landscape.executors.local import LocalProcesses
 from disorder_landscape.parts import needs
 
 
@@ -28,6 +30,7 @@ def study(
     limit: Annotated[
         int | None, typer.Option(min=0, help="So many of the missing tasks only.")
     ] = None,
+    share: ShareOfTasks = "1/1",
 ) -> None:
     """Carry out what the table of a study lacks; an interrupted study goes on.
 
@@ -40,7 +43,7 @@ def study(
     from disorder_landscape.studies.runner import carry_out
     from disorder_landscape.studies.study import Place
 
-    place = Place(output, build, workers)
+    place = Place(output, build, LocalProcesses(workers), parse_share(share))
     if listed:
         for name in study_names():
             one = load_study(name)
@@ -57,6 +60,7 @@ def study(
     for line in derived.lines:
         print(line)
     said = f"{before - left} added, {left} missing" if before else "nothing was missing"
-    print(f"{chosen.table(place)}: {len(chosen.tasks) - left} tasks, {said}")
+    there = len(place.share.of(chosen.tasks)) - left
+    print(f"{chosen.table_of_share(place)}: {there} tasks, {said}")
     if not derived.passed:
         raise typer.Exit(1)

@@ -17,7 +17,8 @@ import xarray as xr
 from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
-from disorder_landscape.executors.local import each_result
+from disorder_landscape.executors.executor import WHOLE, Executor, Share
+from disorder_landscape.executors.local import IN_THIS_PROCESS
 from disorder_landscape.model.quantities import CONDUCTANCES
 
 VARIABLES = (*CONDUCTANCES, "components", "alpha", "potential")
@@ -125,8 +126,24 @@ def _inspect(config: DatasetConfig, folder: Path, shard: int) -> tuple[bool, flo
     return held >= len(shard_indices(config, shard)), None if error is None else float(error[0])
 
 
+def missing_shards(config: DatasetConfig, folder: Path, share: Share = WHOLE) -> list[int]:
+    """Return the shards of a share that are not there, or lack realizations.
+
+    Raises
+    ------
+    ArgumentError
+        If the folder holds a damaged shard, or one of another configuration.
+    """
+    shards = share.of(range(shard_count(config)))
+    return [k for k in shards if not shard_is_done(config, folder, k)]
+
+
 def generate(
-    config: DatasetConfig, folder: Path, workers: int = 1, progress: Progress = lambda done: None
+    config: DatasetConfig,
+    folder: Path,
+    executor: Executor = IN_THIS_PROCESS,
+    progress: Progress = lambda done: None,
+    share: Share = WHOLE,
 ) -> None:
     """Make the shards that are missing.
 
@@ -135,10 +152,11 @@ def generate(
     config : DatasetConfig
     folder : Path
         Where the shards are.
-    workers : int
-        Processes, each with one thread.
+    executor : Executor
     progress : callable
         Called with the number of realizations of every shard that is made.
+    share : Share
+        Which of the shards are looked at.
 
     Raises
     ------
@@ -146,12 +164,8 @@ def generate(
         If the folder holds shards of another configuration or cannot be written; every shard made
         until then stays.
     """
-    missing = [k for k in range(shard_count(config)) if not shard_is_done(config, folder, k)]
-    if workers == 1 or len(missing) < 2:
-        for shard in missing:
-            progress(make_shard(config, folder, shard))
-        return
-    for realizations in each_result(partial(make_shard, config, folder), missing, workers):
+    missing = missing_shards(config, folder, share)
+    for realizations in executor.each_result(partial(make_shard, config, folder), missing):
         progress(realizations)
 
 

@@ -7,11 +7,13 @@ import signal
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
 from multiprocessing import active_children, get_context, parent_process
-from typing import TypeVar
 
-Task = TypeVar("Task")
-Result = TypeVar("Result")
+from disorder_landscape.executors.executor import Result, Task
+from disorder_landscape.machine import cores
+from disorder_landscape.solver.compiled import core, threads_at_work
+
 THREADS = (
     "OMP_NUM_THREADS",
     "OPENBLAS_NUM_THREADS",
@@ -22,35 +24,52 @@ THREADS = (
 """What tells libraries that are not imported yet how many threads they may have."""
 
 
-def each_result(
-    function: Callable[[Task], Result],
-    tasks: Iterable[Task],
-    workers: int,
-    may_be_ended: bool = False,
-) -> Iterator[Result]:
-    """Yield what a function returns for each task, as soon as it is there, in any order.
+@dataclass(frozen=True)
+class LocalProcesses:
+    """An executor: processes of this machine, one thread each; a single one is this process.
 
-    Whoever stops listening, or is interrupted, waits only for the tasks that are in hand; not even
-    for those where they may be ended at any moment, since they go on later from where they were.
+    Parameters
+    ----------
+    workers : int
     """
-    before = set(active_children())
-    with ProcessPoolExecutor(workers, get_context("spawn"), _start_worker) as pool:
-        futures = [pool.submit(function, task) for task in tasks]
-        try:
-            for future in as_completed(futures):
-                yield future.result()
-        except BaseException:
-            if may_be_ended:
-                for worker in set(active_children()) - before:
-                    worker.terminate()
-            pool.shutdown(cancel_futures=True)
-            raise
+
+    workers: int = 1
+
+    @property
+    def at_a_time(self) -> int:
+        """How many tasks are carried out at a time."""
+        return min(self.workers, cores())
+
+    def each_result(
+        self,
+        function: Callable[[Task], Result],
+        tasks: Iterable[Task],
+        may_be_ended: bool = False,
+    ) -> Iterator[Result]:
+        """Yield what a function returns for each task (`Executor.each_result`)."""
+        if self.workers == 1:
+            with threads_at_work(1):
+                yield from map(function, tasks)
+            return
+        before = set(active_children())
+        with ProcessPoolExecutor(self.workers, get_context("spawn"), _start_worker) as pool:
+            futures = [pool.submit(function, task) for task in tasks]
+            try:
+                for future in as_completed(futures):
+                    yield future.result()
+            except BaseException:
+                if may_be_ended:
+                    for worker in set(active_children()) - before:
+                        worker.terminate()
+                pool.shutdown(cancel_futures=True)
+                raise
+
+
+IN_THIS_PROCESS = LocalProcesses(1)
 
 
 def _start_worker() -> None:
     """Keep a worker to one thread, and leave Ctrl-C to the process that waits for it."""
-    from disorder_landscape.solver.compiled import core
-
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     core.set_threads(1)
     os.environ.update(dict.fromkeys(THREADS, "1"))

@@ -78,10 +78,22 @@ class Study:
         """Return the file of the table."""
         return self.plan.folder(place) / f"{self.name}.csv"
 
+    def table_of_share(self, place: Place) -> Path:
+        """Return the file in which a share of the tasks is kept until the table has it too."""
+        table, share = self.table(place), place.share
+        if share.is_whole:
+            return table
+        return table.with_name(f"{self.name}.share-{share.number}-of-{share.count}.csv")
+
+    def tables_of_shares(self, place: Place) -> list[Path]:
+        """Return these files of all shares that there are."""
+        return sorted(self.table(place).parent.glob(f"{self.name}.share-*-of-*.csv"))
+
     def missing(self, place: Place) -> list[Any]:
-        """Return the tasks that the table has no row of."""
-        there = {self.key_of_row(row) for row in read_rows(self.table(place))}
-        return [task for task in self.tasks if self.key(task) not in there]
+        """Return the tasks of this share that no table has a row of."""
+        tables = {self.table(place), *self.tables_of_shares(place)}
+        there = {self.key_of_row(row) for table in tables for row in read_rows(table)}
+        return [task for task in place.share.of(self.tasks) if self.key(task) not in there]
 
     def key(self, task: Any) -> tuple[Any, ...]:
         """Return what tells a task from every other."""

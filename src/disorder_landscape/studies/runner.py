@@ -12,7 +12,6 @@ from tqdm import tqdm
 
 from disorder_landscape.dataset.store import provenance
 from disorder_landscape.estimates import Pace
-from disorder_landscape.executors.local import each_result
 from disorder_landscape.files import replacing, write_json
 from disorder_landscape.studies.plan import Study
 from disorder_landscape.studies.rows import Row, as_text, read_rows, stored_numbers, write_rows
@@ -25,8 +24,8 @@ WRITTEN_EVERY = 5.0
 def carry_out(study: Study, place: Place, limit: int | None = None) -> Derived:
     """Carry out what is missing of a study; return what follows, where it is complete then.
 
-    What is there is not repeated, so that an interrupted study goes on where it was. Several runs
-    may share a table.
+    What is there is not repeated, so that an interrupted study goes on where it was. A share of the
+    tasks is kept in a table of its own, which the next run of the whole study takes into its table.
 
     Parameters
     ----------
@@ -40,18 +39,20 @@ def carry_out(study: Study, place: Place, limit: int | None = None) -> Derived:
     ArgumentError
         If a table or a folder cannot be read or written; what was finished stays.
     """
+    if place.share.is_whole:
+        _gather_shares(study, place)
     # The first wires of all settings come first.
     missing = sorted(study.missing(place), key=lambda task: getattr(task, "index", 0))
     chosen = missing[:limit]
     if chosen:
-        done = len(study.tasks) - len(missing)
+        in_all = len(place.share.of(study.tasks))
         study.plan.prepare(chosen, place)
-        bar = tqdm(total=len(study.tasks), initial=done, desc=study.name, unit=" tasks")
-        at_a_time = min(place.workers, len(chosen))
+        bar = tqdm(total=in_all, initial=in_all - len(missing), desc=study.name, unit=" tasks")
+        at_a_time = min(place.executor.at_a_time, len(chosen))
         pace = Pace(study.name, len(chosen), tqdm.write, warm_up=0, at_a_time=at_a_time)
         with bar:
             _complete(study, place, chosen, bar, pace)
-    if study.missing(place):
+    if study.missing(place) or not place.share.is_whole:
         return Derived()
     return _conclude(study, place, bool(chosen))
 
@@ -74,19 +75,24 @@ def _complete(study: Study, place: Place, tasks: Sequence[Any], bar: Any, pace: 
 
 
 def _results(plan: Plan, place: Place, tasks: Sequence[Any]) -> Iterator[list[Row]]:
-    function = partial(_rows, plan, place)
-    if place.workers == 1:
-        return map(function, tasks)
-    return each_result(function, tasks, place.workers, plan.tasks_resume)
+    return place.executor.each_result(partial(_rows, plan, place), tasks, plan.tasks_resume)
 
 
 def _rows(plan: Plan, place: Place, task: Any) -> list[Row]:
     return [as_text(row) for row in plan.rows(task, place)]
 
 
+def _gather_shares(study: Study, place: Place) -> None:
+    """Take what other runs have left in tables of their shares."""
+    for path in study.tables_of_shares(place):
+        _add(study, place, read_rows(path))
+        path.unlink()
+        path.with_suffix(".json").unlink(missing_ok=True)
+
+
 def _add(study: Study, place: Place, new: Iterable[Row]) -> None:
     """Write rows into the table, and keep those that others have added in the meantime."""
-    path = study.table(place)
+    path = study.table_of_share(place)
     there = read_rows(path)
     known = {study.key_of_row(row) for row in there}
     rows = [*there, *(row for row in new if study.key_of_row(row) not in known)]

@@ -10,18 +10,22 @@ from typing import Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict
 
+from disorder_landscape.executors.executor import WHOLE, Executor, Share
+from disorder_landscape.executors.local import IN_THIS_PROCESS
 from disorder_landscape.studies.rows import Row
 
 
 @dataclass(frozen=True)
 class Place:
-    """Where studies are carried out, and with how many processes."""
+    """Where studies are carried out, and by whom."""
 
     output: Path
     """Folder of the tables, and of what follows from them."""
     build: Path
     """Folder of datasets, models, and of tables that only these very solvers make."""
-    workers: int
+    executor: Executor = IN_THIS_PROCESS
+    share: Share = WHOLE
+    """Which of the tasks are looked at."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +67,7 @@ class Plan(Part):
         """Return the tasks, in the order of the table."""
 
     def prepare(self, tasks: Sequence[Any], place: Place) -> None:
-        """Make what these tasks share, with all workers, before they are shared out."""
+        """Make what these tasks have in common, before they are carried out."""
 
     @abstractmethod
     def rows(self, task: Any, place: Place) -> Iterable[Mapping[str, object]]:

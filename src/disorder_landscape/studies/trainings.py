@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import asdict, dataclass
 from itertools import product
+from multiprocessing import parent_process
 from pathlib import Path
 from typing import Any, ClassVar, Literal
 
@@ -115,7 +116,7 @@ def generate_datasets(runs: Sequence[PlannedRun], place: Place) -> None:
     unfinished = [run for run in runs if not _is_finished(run, place)]
     for config in {run.config.dataset: run.config for run in unfinished}.values():
         # A run's dataset is beside its folder.
-        generate(Run(config.dataset.hash, config, place.build / "models"), place.workers)
+        generate(Run(config.dataset.hash, config, place.build / "models"), place.executor)
 
 
 def trained(run: PlannedRun, place: Place) -> Result:
@@ -126,7 +127,7 @@ def trained(run: PlannedRun, place: Place) -> Result:
     if not _is_finished(run, place):
         config = run.config
         dataset = shards.read_shards(config.dataset, dataset_folder(config.dataset, place.build))
-        train(dataset, config, folder, "landscape study", progress=place.workers == 1)
+        train(dataset, config, folder, "landscape study", progress=parent_process() is None)
     return _result(run, folder)
 
 
