@@ -15,6 +15,7 @@ import xarray as xr
 from disorder_landscape import ArgumentError, chain, conductance
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset import realizations, shards, store
+from disorder_landscape.executors.executor import Share
 from disorder_landscape.executors.local import LocalProcesses
 from disorder_landscape.model.quantities import CONDUCTANCES
 

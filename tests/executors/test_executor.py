@@ -1,5 +1,7 @@
 """Shares: together they are all tasks, and each is one once."""
 
+from itertools import chain
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as some
@@ -11,7 +13,7 @@ from disorder_landscape.executors.executor import WHOLE, Share, parse_share
 @given(some.integers(0, 50), some.integers(1, 12))
 def test_shares_are_all_tasks_together_each_once(tasks, count):
     shares = [list(Share(number, count).of(range(tasks))) for number in range(1, count + 1)]
-    assert sorted(sum(shares, [])) == list(range(tasks))
+    assert sorted(chain.from_iterable(shares)) == list(range(tasks))
     assert max(map(len, shares)) - min(map(len, shares)) <= 1
 
 
