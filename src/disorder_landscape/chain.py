@@ -137,6 +137,11 @@ def preset_run(preset: str, build: str | Path = "build", model: str = FIVE) -> R
     return Run(model, config, Path(build) / SHIPPED / model, shipped=True)
 
 
+def jobs_folder(run: Run) -> Path:
+    """Return the folder of the jobs of Slurm that make a run's dataset, and of their logs."""
+    return run.folder.parent / "jobs" / f"generate-{run.name}"
+
+
 def generate(run: Run, executor: Executor, share: Share = WHOLE) -> None:
     """Make what is missing of the run's dataset, or of a share of it, with a progress bar."""
     config = run.config.dataset

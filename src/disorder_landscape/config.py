@@ -249,7 +249,7 @@ def checked(
         }
         message = messages.get(first["type"], "{key} is wrong: {message}")
         but = message.format(key=key, message=first["msg"].removeprefix("Value error, "))
-        raise ArgumentError(name, f"describe a run ('{path}')", but) from None
+        raise ArgumentError(name, f"be right ('{path}')", but) from None
 
 
 def _read_toml(path: str | Path, name: str) -> dict[str, object]:

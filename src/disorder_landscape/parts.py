@@ -15,6 +15,7 @@ PARTS = {
         "sklearn": "scikit-learn",
         "tensorflow": "TensorFlow",
     },
+    "cluster": {"distributed": "Dask"},
     "dev": {
         "arviz": "ArviZ",
         "flint": "python-flint",

@@ -14,6 +14,7 @@ def status(config: ConfigFile, build: Build = Path("build")) -> None:
     """
     from disorder_landscape import chain
     from disorder_landscape.dataset import shards
+    from disorder_landscape.executors.slurm import said_of_jobs
 
     run = chain.open_run(config, build)
     now = shards.status(run.config.dataset, run.dataset_folder)
@@ -23,6 +24,9 @@ def status(config: ConfigFile, build: Build = Path("build")) -> None:
     )
     if now.largest_error is not None:
         print(f"accuracy    estimated errors of up to {now.largest_error:.2g} e²/h")
+    jobs = said_of_jobs(chain.jobs_folder(run))
+    if jobs:
+        print(f"jobs        {jobs}")
     begun = run.model_folder.exists()
     print(f"model       {'trained' if run.is_trained else 'begun' if begun else 'not begun'}")
     print(f"evaluation  {'there' if run.evaluation_file.exists() else 'not there'}")

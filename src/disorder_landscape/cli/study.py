@@ -8,9 +8,17 @@ from typing import Annotated
 import typer
 
 from disorder_landscape.arguments import ArgumentError
+from disorder_landscape.cli.executors import (
+    DryRun,
+    ExecutorName,
+    Scheduler,
+    SiteFile,
+    Where,
+    executor_of,
+    on_slurm,
+)
 from disorder_landscape.cli.options import Build, ShareOfTasks, Workers, resumable
 from disorder_landscape.executors.executor import parse_share
-from disorder_landscape.executors.local import LocalProcesses
 from disorder_landscape.parts import needs
 
 
@@ -31,6 +39,10 @@ def study(
         int | None, typer.Option(min=0, help="So many of the missing tasks only.")
     ] = None,
     share: ShareOfTasks = "1/1",
+    executor: ExecutorName = Where.LOCAL,
+    site: SiteFile = None,
+    dry_run: DryRun = False,
+    scheduler: Scheduler = None,
 ) -> None:
     """Carry out what the table of a study lacks; an interrupted study goes on.
 
@@ -43,7 +55,7 @@ def study(
     from disorder_landscape.studies.runner import carry_out
     from disorder_landscape.studies.study import Place
 
-    place = Place(output, build, LocalProcesses(workers), parse_share(share))
+    place = Place(output, build, executor_of(executor, workers, scheduler), parse_share(share))
     if listed:
         for name in study_names():
             one = load_study(name)
@@ -55,6 +67,13 @@ def study(
     chosen = load_study(plan)
     before = len(chosen.missing(place))
     with resumable():
+        if executor is Where.SLURM:
+            options = ["--output", str(output.resolve()), "--build", str(build.resolve())]
+            command = ["study", plan if chosen.is_ours else str(Path(plan).resolve()), *options]
+            jobs = build / "jobs" / f"study-{chosen.name}"
+            on_slurm(command, site, lambda: len(chosen.missing(place)), jobs, dry_run)
+            if dry_run:
+                return
         derived = carry_out(chosen, place, limit)
     left = len(chosen.missing(place))
     for line in derived.lines:
