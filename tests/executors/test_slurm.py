@@ -157,7 +157,7 @@ shard_size = 5
     shutil.which("sbatch") is None or "SLURM_CONF" not in os.environ, reason="needs a Slurm"
 )
 def test_slurm_itself(tmp_path):
-    """200 wires by eight jobs, of which one is killed and one requeued: the same bytes."""
+    """200 wires by eight jobs: one is killed, one requeued, the controller restarted."""
     (tmp_path / "two.toml").write_text(CONFIG)
     (tmp_path / "site.toml").write_text('partition = "main"\njobs = 8\nmemory_gb = 1\n')
     landscape = [shutil.which("landscape"), "generate", "--config", tmp_path / "two.toml"]
@@ -175,6 +175,9 @@ def test_slurm_itself(tmp_path):
         running = slurm_says("squeue", "--noheader", "--array", "--states=R", "--format=%i")
         other = running.split()[-1] if running.split() else None
     slurm_says("scontrol", "requeue", other)
+    slurm_says("scontrol", "shutdown", "slurmctld")
+    time.sleep(3)
+    slurm_says("slurmctld")
     assert waits.wait(600) == 0
     subprocess.run([*landscape, "--build", tmp_path / "local"], check=True)
     here, there = (sorted((tmp_path / of).glob("datasets/*/*.nc")) for of in ("local", "jobs"))
