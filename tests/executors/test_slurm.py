@@ -15,6 +15,7 @@ import pytest
 from typer.testing import CliRunner
 
 from disorder_landscape import ArgumentError
+from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.cli import app
 from disorder_landscape.executors import slurm
 from disorder_landscape.executors.site import Site, load_site
@@ -140,6 +141,34 @@ def test_the_command_line_asks_for_what_it_needs(tmp_path):
         assert isinstance(told.exception, ArgumentError)
         assert said in str(told.exception)
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("command", "program"),
+    [
+        (["generate", "--config", "configs/smoke.toml"], "generate --config {here}/configs/smoke"),
+        (["study", "conventions", "--output"], "study conventions --output {output}"),
+    ],
+)
+def test_a_dry_run_prints_what_a_job_runs(command, program, tmp_path):
+    site = tmp_path / "site.toml"
+    site.write_text('partition = "main"\njobs = 4\n')
+    output = [str(tmp_path)] if command[-1] == "--output" else []
+    options = ["--build", str(tmp_path), "--executor", "slurm", "--site", str(site), "--dry-run"]
+    told = CliRunner().invoke(app, [*command, *output, *options])
+    assert told.exit_code == 0, told.output
+    assert program.format(here=REPOSITORY, output=tmp_path) in told.output
+    assert told.output.splitlines()[-1].endswith("--share $((SLURM_ARRAY_TASK_ID + 0))/4")
+    assert list(tmp_path.iterdir()) == [site]
+
+
+def test_status_tells_of_jobs(programs, tmp_path):
+    programs("squeue", "echo RUNNING; echo PENDING; echo RUNNING")
+    jobs = tmp_path / "jobs" / "generate-smoke"
+    jobs.mkdir(parents=True)
+    (jobs / slurm.JOBS).write_text('{"jobs": ["7"]}')
+    command = ["status", "--config", "configs/smoke.toml", "--build", str(tmp_path)]
+    assert "jobs        2 running, 1 pending\n" in CliRunner().invoke(app, command).output
 
 
 CONFIG = """
