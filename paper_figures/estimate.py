@@ -12,7 +12,7 @@ from disorder_landscape.machine import cores
 from disorder_landscape.solver import compiled
 
 WORKERS = 2
-TRAINING = 0.55
+TRAINING = 0.39
 """Seconds that a training takes, over those that one core would take to simulate its dataset, …"""
 DRAWING = 1700
 """… and wires that are simulated in the time of all figures (PRESET=small, Intel Xeon)."""
