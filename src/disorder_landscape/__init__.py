@@ -42,7 +42,7 @@ def __getattr__(name: str) -> Any:
             from disorder_landscape.learning.prediction import predict
         return predict
     if name == "verify":
-        with needs("inference"):
-            from disorder_landscape.inference.verify import verify
+        from disorder_landscape.inference.verify import verify
+
         return verify
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
