@@ -15,8 +15,8 @@ from sphinx.util.docutils import SphinxDirective
 
 from disorder_landscape.model.parameters import BARRIER_RANGE, PARAMETER_RANGES, Nanowire
 
-ENTRY = re.compile(r"^(\w[\w, ]*) : .*\n((?:    .*\n?)+)", re.MULTILINE)
-"""A parameter of a NumPy docstring, or several, and what is said of them."""
+ENTRY = re.compile(r"^(\w+) : .*\n((?:    .*\n?)+)", re.MULTILINE)
+"""A parameter of a NumPy docstring, and what is said of it."""
 
 
 def table() -> str:
@@ -24,13 +24,12 @@ def table() -> str:
     ranges = {**PARAMETER_RANGES, "barrier": BARRIER_RANGE}
     defaults = {field.name: field.default for field in fields(Nanowire)}
     rows = ["| parameter | what it is | default | range |", "|---|---|---|---|"]
-    for names, said in ENTRY.findall(inspect.getdoc(Nanowire) or ""):
-        for name in names.split(", "):
-            if name in ranges:
-                low, high, unit = ranges[name]
-                default = _written(defaults[name])
-                limits = f"{low:,g} to {high:,g} {unit}".strip()
-                rows.append(f"| `{name}` | {' '.join(said.split())} | {default} | {limits} |")
+    for name, said in ENTRY.findall(inspect.getdoc(Nanowire) or ""):
+        if name in ranges:
+            low, high, unit = ranges[name]
+            default = _written(defaults[name])
+            limits = f"{low:,g} to {high:,g} {unit}".strip()
+            rows.append(f"| `{name}` | {' '.join(said.split())} | {default} | {limits} |")
     return "\n".join(rows)
 
 

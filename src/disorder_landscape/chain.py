@@ -148,13 +148,14 @@ def generate(run: Run, executor: Executor, share: Share = WHOLE) -> None:
     sizes = [len(shards.shard_indices(config, k)) for k in range(shards.shard_count(config))]
     missing = shards.missing_shards(config, run.dataset_folder, share)
     wires, in_all = sum(sizes[k] for k in missing), sum(share.of(sizes))
-    with compiled.threads_at_work(1):
-        per_core = wires / executor.at_a_time
-        announce_repeated("generate", lambda k: simulate(config, range(k, k + 1)), per_core)
+    if missing:
+        with compiled.threads_at_work(1):
+            per_core = wires / executor.at_a_time
+            announce_repeated("generate", lambda k: simulate(config, range(k, k + 1)), per_core)
     with tqdm(
         total=in_all, unit=" realizations", desc="generate", smoothing=0.1, initial=in_all - wires
     ) as bar:
-        shards.generate(config, run.dataset_folder, executor, bar.update, share)
+        shards.make_shards(config, run.dataset_folder, missing, executor, bar.update)
     warning = accuracy_warning(shards.status(config, run.dataset_folder))
     if warning:
         print(warning)

@@ -69,7 +69,8 @@ def study(
     with resumable():
         if executor is Where.SLURM:
             options = ["--output", str(output.resolve()), "--build", str(build.resolve())]
-            command = ["study", plan if chosen.is_ours else str(Path(plan).resolve()), *options]
+            named = str(Path(plan).resolve()) if plan.endswith(".toml") else plan
+            command = ["study", named, *options]
             jobs = build / "jobs" / f"study-{chosen.name}"
             on_slurm(command, site, lambda: len(chosen.missing(place)), jobs, dry_run)
             if dry_run:

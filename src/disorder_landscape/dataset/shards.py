@@ -6,7 +6,7 @@ is a function of the configuration alone, so workers, order and restarts leave n
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -164,7 +164,17 @@ def generate(
         If the folder holds shards of another configuration or cannot be written; every shard made
         until then stays.
     """
-    missing = missing_shards(config, folder, share)
+    make_shards(config, folder, missing_shards(config, folder, share), executor, progress)
+
+
+def make_shards(
+    config: DatasetConfig,
+    folder: Path,
+    missing: Iterable[int],
+    executor: Executor,
+    progress: Progress,
+) -> None:
+    """Make these shards, and call `progress` as `generate` does."""
     for realizations in executor.each_result(partial(make_shard, config, folder), missing):
         progress(realizations)
 

@@ -78,11 +78,6 @@ class Study:
         """Return the file of the table."""
         return self.plan.folder(place) / f"{self.name}.csv"
 
-    @property
-    def is_ours(self) -> bool:
-        """Whether it is one of configs/studies, so that its name is enough."""
-        return self.name in study_names() and self.command.endswith(f" {self.name}")
-
     def table_of_share(self, place: Place) -> Path:
         """Return the file in which a share of the tasks is kept until the table has it too."""
         table, share = self.table(place), place.share
