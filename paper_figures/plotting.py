@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
 
@@ -18,7 +18,6 @@ from matplotlib.colorbar import Colorbar
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from disorder_landscape.studies.crossings import R2_AIMED_AT
 from disorder_landscape.studies.trainings_table import Result
 
 COLUMN, FULL_WIDTH = 3.404, 7.06
@@ -66,29 +65,6 @@ def trainings(results: Sequence[Result], names: Sequence[str]) -> xr.Dataset:
     return xr.Dataset(
         {name: ("training", np.array([getattr(one, name) for one in results])) for name in columns}
     )
-
-
-def draw_trainings(axes: Axes, data: xr.Dataset, over: str, label: Callable[..., str]) -> None:
-    """Draw R² of trainings: dots, and a line through the mean over seeds per component count.
-
-    Parameters
-    ----------
-    axes : Axes
-    data : Dataset
-        From `trainings`.
-    over : str
-        The variable on the horizontal axis.
-    label : callable
-        Called with a component count and its trainings, returns the text of the legend.
-    """
-    numbers = np.unique(data["components"])
-    colours = mpl.colormaps["viridis"](np.linspace(0.0, 0.9, len(numbers)))
-    for colour, n in zip(colours, numbers, strict=True):
-        of_n = data.isel(training=np.flatnonzero(data["components"] == n))
-        mean = of_n["R2"].groupby(of_n[over]).mean()
-        axes.plot(of_n[over], of_n["R2"], ".", color=colour, ms=4, alpha=0.6)
-        axes.plot(mean[over], mean, "-", color=colour, lw=1, label=label(n, of_n))
-    axes.axhline(R2_AIMED_AT, color="0.4", ls=":", lw=1)
 
 
 def write(figure: Figure, left: float, top: float, text: str, ha: str = "left") -> None:

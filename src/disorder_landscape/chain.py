@@ -22,6 +22,7 @@ from disorder_landscape.dataset import shards
 from disorder_landscape.dataset.realizations import simulate
 from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
 from disorder_landscape.estimates import announce_repeated
+from disorder_landscape.executors import slurm
 from disorder_landscape.executors.executor import WHOLE, Executor, Share
 from disorder_landscape.executors.local import LocalProcesses
 from disorder_landscape.model.parameters import NOISE_FLOOR
@@ -139,7 +140,7 @@ def preset_run(preset: str, build: str | Path = "build", model: str = FIVE) -> R
 
 def jobs_folder(run: Run) -> Path:
     """Return the folder of the jobs of Slurm that make a run's dataset, and of their logs."""
-    return run.folder.parent / "jobs" / f"generate-{run.name}"
+    return slurm.jobs_folder(run.folder.parent, f"generate-{run.name}")
 
 
 def generate(run: Run, executor: Executor, share: Share = WHOLE) -> None:

@@ -19,6 +19,7 @@ from disorder_landscape.cli.executors import (
 )
 from disorder_landscape.cli.options import Build, ShareOfTasks, Workers, resumable
 from disorder_landscape.executors.executor import parse_share
+from disorder_landscape.executors.slurm import jobs_folder
 from disorder_landscape.parts import needs
 
 
@@ -71,7 +72,7 @@ def study(
             options = ["--output", str(output.resolve()), "--build", str(build.resolve())]
             named = str(Path(plan).resolve()) if plan.endswith(".toml") else plan
             command = ["study", named, *options]
-            jobs = build / "jobs" / f"study-{chosen.name}"
+            jobs = jobs_folder(build, f"study-{chosen.name}")
             on_slurm(command, site, lambda: len(chosen.missing(place)), jobs, dry_run)
             if dry_run:
                 return

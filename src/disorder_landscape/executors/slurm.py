@@ -30,6 +30,11 @@ LOOKING = 0.05
 """… the most of the time that looking may take."""
 
 
+def jobs_folder(build: Path, name: str) -> Path:
+    """Return the folder of the jobs of a command, and of their logs."""
+    return build / "jobs" / name
+
+
 def scripts(command: Sequence[str], site: Site, jobs: int, folder: Path) -> list[str]:
     """Return the scripts for sbatch, one for each array.
 
