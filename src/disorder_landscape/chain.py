@@ -25,6 +25,7 @@ from disorder_landscape.estimates import announce_repeated
 from disorder_landscape.executors import slurm
 from disorder_landscape.executors.executor import WHOLE, Executor, Share
 from disorder_landscape.executors.local import LocalProcesses
+from disorder_landscape.locks import kept_from_others
 from disorder_landscape.model.parameters import NOISE_FLOOR
 from disorder_landscape.model.quantities import with_units
 from disorder_landscape.solver import compiled
@@ -144,7 +145,18 @@ def jobs_folder(run: Run) -> Path:
 
 
 def generate(run: Run, executor: Executor, share: Share = WHOLE) -> None:
-    """Make what is missing of the run's dataset, or of a share of it, with a progress bar."""
+    """Make what is missing of the run's dataset, or of a share of it, with a progress bar.
+
+    Of two processes with the same dataset one waits, unless each has a share of it.
+    """
+    with kept_from_others(run.dataset_folder, shared=not share.is_whole):
+        _generate(run, executor, share)
+    warning = accuracy_warning(shards.status(run.config.dataset, run.dataset_folder))
+    if warning:
+        print(warning)
+
+
+def _generate(run: Run, executor: Executor, share: Share) -> None:
     config = run.config.dataset
     sizes = [len(shards.shard_indices(config, k)) for k in range(shards.shard_count(config))]
     missing = shards.missing_shards(config, run.dataset_folder, share)
@@ -157,9 +169,6 @@ def generate(run: Run, executor: Executor, share: Share = WHOLE) -> None:
         total=in_all, unit=" realizations", desc="generate", smoothing=0.1, initial=in_all - wires
     ) as bar:
         shards.make_shards(config, run.dataset_folder, missing, executor, bar.update)
-    warning = accuracy_warning(shards.status(config, run.dataset_folder))
-    if warning:
-        print(warning)
 
 
 def accuracy_warning(now: shards.Status) -> str:

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import glob
 import json
 import os
 import shutil
+import socket
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
 from disorder_landscape.arguments import ArgumentError, require
+
+_HOST = socket.gethostname()
 
 
 @contextmanager
@@ -24,10 +28,11 @@ def replacing(path: Path) -> Iterator[Path]:
     ArgumentError
         If the folder cannot be written, or the disk is full; nothing is left behind then.
     """
-    temporary = path.with_name(f".writing-{path.name}")  # the suffix stays: Keras looks at it
+    # A name of this process' own, whoever else writes the same; Keras looks at the suffix.
+    temporary = path.with_name(f".writing-{_HOST}-{os.getpid()}-{path.name}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        _remove(temporary)  # left by a run that was killed
+        _remove_left_behind(path)
         yield temporary
         temporary.replace(path)
     except (OSError, RuntimeError) as error:  # HDF5 says RuntimeError when a disk is full
@@ -37,6 +42,27 @@ def replacing(path: Path) -> Iterator[Path]:
     finally:
         with suppress(OSError):
             _remove(temporary)
+
+
+def _remove_left_behind(path: Path) -> None:
+    """Remove what processes of this machine that were killed have left beside a path."""
+    prefix = f".writing-{_HOST}-"
+    for there in path.parent.glob(f"{glob.escape(prefix)}*-{glob.escape(path.name)}"):
+        process = there.name.removeprefix(prefix).split("-")[0]
+        if process.isdecimal() and not _is_running(int(process)):
+            _remove(there)
+
+
+def _is_running(process: int) -> bool:
+    if process == os.getpid():
+        return False  # it writes nothing yet: another one had the same number
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:  # another user's
+        return True
+    return True
 
 
 def check_writable(name: str, path: Path) -> None:

@@ -35,6 +35,7 @@ from disorder_landscape.learning.scaling import (
     label_names,
 )
 from disorder_landscape.learning.schedule import learning_rate, numbered_epochs
+from disorder_landscape.locks import kept_from_others
 
 
 def train(
@@ -87,32 +88,33 @@ def train(
     X = conductance_array(dataset)
     Y = label_array(dataset, names_of_labels(config))
     claim(folder, config, dataset, command)
-    if (folder / METRICS).exists():
-        if progress:
-            tqdm.write(f"'{folder}' holds this very training, finished: nothing to do.")
-        return Scores.from_dict(read_model_file(folder / METRICS))
+    with kept_from_others(folder):
+        if (folder / METRICS).exists():
+            if progress:
+                tqdm.write(f"'{folder}' holds this very training, finished: nothing to do.")
+            return Scores.from_dict(read_model_file(folder / METRICS))
 
-    def scores(model: TrainedModel) -> Scores:
-        predicted = model.predict_labels(X[test])
-        return score(Y[test], predicted, model.labels, config.dataset.sites)
+        def scores(model: TrainedModel) -> Scores:
+            predicted = model.predict_labels(X[test])
+            return score(Y[test], predicted, model.labels, config.dataset.sites)
 
-    if config.training.networks == 1:
-        examples = Examples(X[used], Y[used], config.dataset.components, config.training)
-        model, curves = _train_one(examples, config, folder, scores, progress)
-    else:
-        folders = [folder / f"network-{i + 1}" for i in range(config.training.networks)]
-        for member, one in zip(folders, member_configs(config), strict=True):
-            train(dataset, one, member, command, progress)
-        model, curves = combine(folders, config)
-        write_curves(folder / "curves.csv", curves)
+        if config.training.networks == 1:
+            examples = Examples(X[used], Y[used], config.dataset.components, config.training)
+            model, curves = _train_one(examples, config, folder, scores, progress)
+        else:
+            folders = [folder / f"network-{i + 1}" for i in range(config.training.networks)]
+            for member, one in zip(folders, member_configs(config), strict=True):
+                train(dataset, one, member, command, progress)
+            model, curves = combine(folders, config)
+            write_curves(folder / "curves.csv", curves)
 
-    final = scores(model)
-    model.save(folder)
-    for suffix in ("pdf", "png"):
-        plot_curves(folder / f"curves.{suffix}", curves)
-    write_json(folder / METRICS, final.to_dict())
-    drop_checkpoints(folder)
-    return final
+        final = scores(model)
+        model.save(folder)
+        for suffix in ("pdf", "png"):
+            plot_curves(folder / f"curves.{suffix}", curves)
+        write_json(folder / METRICS, final.to_dict())
+        drop_checkpoints(folder)
+        return final
 
 
 def _train_one(

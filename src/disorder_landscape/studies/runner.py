@@ -13,6 +13,7 @@ from tqdm import tqdm
 from disorder_landscape.dataset.store import provenance
 from disorder_landscape.estimates import Pace
 from disorder_landscape.files import replacing, write_json
+from disorder_landscape.locks import kept_from_others
 from disorder_landscape.studies.plan import Study
 from disorder_landscape.studies.rows import Row, as_text, read_rows, stored_numbers, write_rows
 from disorder_landscape.studies.study import Derived, Place, Plan
@@ -25,7 +26,8 @@ def carry_out(study: Study, place: Place, limit: int | None = None) -> Derived:
     """Carry out what is missing of a study; return what follows, where it is complete then.
 
     What is there is not repeated, so that an interrupted study goes on where it was. A share of the
-    tasks is kept in a table of its own, which the next run of the whole study takes into its table.
+    tasks is kept in a table of its own, which the next run of the whole study takes into its table;
+    of two such runs one waits.
 
     Parameters
     ----------
@@ -39,8 +41,14 @@ def carry_out(study: Study, place: Place, limit: int | None = None) -> Derived:
     ArgumentError
         If a table or a folder cannot be read or written; what was finished stays.
     """
-    if place.share.is_whole:
+    if not place.share.is_whole:
+        return _carry_out(study, place, limit)
+    with kept_from_others(study.table(place).parent, study.name):
         _gather_shares(study, place)
+        return _carry_out(study, place, limit)
+
+
+def _carry_out(study: Study, place: Place, limit: int | None) -> Derived:
     # The first wires of all settings come first.
     missing = sorted(study.missing(place), key=lambda task: getattr(task, "index", 0))
     chosen = missing[:limit]
