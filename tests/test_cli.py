@@ -7,20 +7,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from command_line import landscape
 from disorder_landscape import Nanowire, conductance
 from disorder_landscape.chain import FIVE, shipped_model
-from disorder_landscape.cli import main
 
 SMALL = ["--sites", "30", "--B", "0:0.8:5", "--bias", "-0.02,0,0.02"]
-
-
-def landscape(monkeypatch, capsys, *arguments):
-    """Return exit code, standard output and standard error of a command."""
-    monkeypatch.setattr(sys, "argv", ["landscape", *map(str, arguments)])
-    with pytest.raises(SystemExit) as stop:
-        main()
-    said = capsys.readouterr()
-    return stop.value.code, said.out, said.err
 
 
 @pytest.mark.parametrize("ending", ["csv", "npy", "nc"])

@@ -1,23 +1,47 @@
-"""`landscape infer`: the disorder that explains a measurement."""
+"""`landscape infer`: the disorder that explains a measurement, or each of many."""
 
 from __future__ import annotations
 
 import sys
+from collections import Counter
+from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from disorder_landscape.arguments import require
-from disorder_landscape.cli.options import made_here, resumable
+from disorder_landscape.cli.executors import (
+    DryRun,
+    ExecutorName,
+    Scheduler,
+    SiteFile,
+    Where,
+    executor_of,
+    on_slurm,
+)
+from disorder_landscape.cli.options import ShareOfTasks, Workers, made_here, resumable
+from disorder_landscape.executors.executor import Executor, parse_share
 from disorder_landscape.parts import needs
+
+if TYPE_CHECKING:
+    from disorder_landscape.inference.file import Settings, Task
 
 
 @needs("inference")
 def infer(
-    measurement: Annotated[Path, typer.Argument(help="netCDF file with G_LL ... G_RL.")],
+    measurements: Annotated[
+        list[Path],
+        typer.Argument(metavar="measurement...", help="netCDF files with G_LL ... G_RL."),
+    ],
     model: Annotated[Path, typer.Option(help="Folder of a trained model.")],
-    output: Annotated[Path, typer.Option("--output", "-o", help="netCDF file.")],
+    output: Annotated[
+        Path,
+        typer.Option(
+            "--output", "-o", help="netCDF file; of several measurements, a folder of them."
+        ),
+    ],
     noise: Annotated[
         str | None,
         typer.Option(
@@ -32,7 +56,15 @@ def infer(
         int, typer.Option(help="Samples of the posterior that are written, an even number.")
     ] = 64,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the ensembles.")] = 0,
-    plot: Annotated[Path | None, typer.Option(help="Picture of the result.")] = None,
+    plot: Annotated[
+        Path | None, typer.Option(help="Picture of the result; of several, a folder of them.")
+    ] = None,
+    workers: Workers = 2,
+    share: ShareOfTasks = "1/1",
+    executor: ExecutorName = Where.LOCAL,
+    site: SiteFile = None,
+    dry_run: DryRun = False,
+    scheduler: Scheduler = None,
 ) -> None:
     """Find the disorder that explains a measurement, with error bars and a verdict.
 
@@ -40,43 +72,114 @@ def infer(
     disorder model's prior, with --from-prior or where a guess has led astray. Some conductances may
     be missing or NaN. Interrupted, the same command goes on (through OUTPUT.unfinished.json).
 
+    Several measurements, with a folder as OUTPUT, are shared out among the workers or jobs; what is
+    in the folder is not repeated.
+
     Example: landscape infer wire.nc --model data_small/models/five_components_and_alpha_noisy
     --noise 0.01 -o inferred.nc --plot inferred.png
     """
-    from disorder_landscape.dataset.store import read_dataset, write_dataset
+    from disorder_landscape.inference.file import Settings, Task, tasks_of_folder
+    from disorder_landscape.inference.report import parse_noise
+
+    errors = None if noise is None else parse_noise(noise)
+    settings = Settings(model, errors, from_prior, samples, seed, made_here())
+    is_file = len(measurements) == 1 and output.suffix and not output.is_dir()
+    if is_file:
+        _infer_alone(settings, Task(measurements[0], output, plot))
+        return
+    with resumable():
+        tasks = tasks_of_folder(measurements, output, plot, settings)
+        if executor is Where.SLURM:
+            command = _command(tasks, output, plot, noise, settings)
+            missing = partial(_count_missing, tasks)
+            on_slurm(command, site, missing, output / "jobs", dry_run)
+            if dry_run:
+                return
+        chosen = parse_share(share).of(tasks)
+        _infer_each(settings, chosen, executor_of(executor, workers, scheduler))
+
+
+def _infer_alone(settings: Settings, task: Task) -> None:
+    """Find what explains one measurement, on all cores, and print what was found."""
+    from disorder_landscape.dataset.store import read_dataset
     from disorder_landscape.files import check_netcdf, check_writable
-    from disorder_landscape.inference.infer import infer as find
+    from disorder_landscape.inference.file import infer_file
     from disorder_landscape.inference.infer import observation_of
-    from disorder_landscape.inference.plot import plot_inference
-    from disorder_landscape.inference.problem.measurement import measurement_of
     from disorder_landscape.inference.problem.observation import stated_noise
     from disorder_landscape.inference.progress import announce_inference, inference_progress
-    from disorder_landscape.inference.report import noise_hint, parse_noise, summary
+    from disorder_landscape.inference.report import noise_hint, summary
     from disorder_landscape.learning.model import load_model_config
     from disorder_landscape.simulation import check_plot
 
+    output, plot = task.output, task.plot
     check_netcdf("output", output)
-    same = output.resolve() == measurement.resolve()
+    same = output.resolve() == task.measurement.resolve()
     require(not same, "output", "be another file than the measurement", f"both are '{output}'")
     if plot is not None:
         check_plot(plot)
         check_writable("plot", plot)
-    measured = read_dataset(measurement)
-    errors = stated_noise(measured.attrs) if noise is None else parse_noise(noise)
-    config = load_model_config(model)
-    hint = "" if from_prior else noise_hint(config.training, errors)
-    if hint:
+    measured, config = read_dataset(task.measurement), load_model_config(settings.model)
+    errors = stated_noise(measured.attrs) if settings.noise is None else settings.noise
+    if not settings.from_prior and (hint := noise_hint(config.training, errors)):
         print(hint, file=sys.stderr)
     announce_inference(observation_of(measured, config.dataset, errors))
-    unfinished = output.with_name(f"{output.name}.unfinished.json")
     with resumable(), inference_progress() as progress:
-        result = find(
-            measured, model, errors, not from_prior, samples, seed, None, unfinished, progress
-        )
-    write_dataset(result, output, made_here(), may_lack=["misfit"])  # of channels without data
-    if plot is not None:
-        usual = {name: result.attrs[name] for name in ("theta", "barrier", "temperature")}
-        plot_inference(result, measurement_of(measured, usual, complete=False), plot)
-    unfinished.unlink(missing_ok=True)
+        result = infer_file(settings, task, progress)
     print("\n".join(summary(result)))
     print(f"wrote {output}" + (f" and {plot}" if plot else ""))
+
+
+def _infer_each(settings: Settings, tasks: Sequence[Task], executor: Executor) -> None:
+    """Find what explains each of many measurements that has no result yet.
+
+    Raises
+    ------
+    Exit
+        With status 1 if there is no result for some.
+    """
+    from tqdm import tqdm
+
+    from disorder_landscape.estimates import Pace
+    from disorder_landscape.inference.file import infer_one_of_many
+
+    missing = [task for task in tasks if not task.is_done]
+    verdicts: Counter[str] = Counter()
+    bar = tqdm(total=len(tasks), initial=len(tasks) - len(missing), desc="infer", unit=" files")
+    at_a_time = min(executor.at_a_time, max(len(missing), 1))
+    pace = Pace("infer", len(missing), bar.write, warm_up=0, at_a_time=at_a_time)
+    with bar:
+        infer_one = partial(infer_one_of_many, settings)
+        for outcome in executor.each_result(infer_one, missing, may_be_ended=True):
+            verdicts[outcome.verdict] += 1
+            bar.write(f"{outcome.task.measurement}: {outcome.verdict or outcome.error}")
+            bar.update()
+            pace.step()
+    failed = verdicts.pop("", 0)
+    said = ", ".join(f"{count} {verdict}" for verdict, count in verdicts.most_common())
+    print(f"{len(tasks) - failed} results are there" + (f"; new: {said}" if said else ""))
+    if failed:
+        print(f"without a result: {failed}; the errors are above", file=sys.stderr)
+        raise typer.Exit(1)
+
+
+def _count_missing(tasks: Sequence[Task]) -> int:
+    return sum(not task.is_done for task in tasks)
+
+
+def _command(
+    tasks: Sequence[Task], output: Path, plot: Path | None, noise: str | None, settings: Settings
+) -> list[str]:
+    """Return the command by which a job does its share of the same."""
+    options = {
+        "--model": settings.model.resolve(),
+        "--output": output.resolve(),
+        "--samples": settings.samples,
+        "--seed": settings.seed,
+    }
+    if plot is not None:
+        options["--plot"] = plot.resolve()
+    if noise is not None:
+        options["--noise"] = noise
+    words = [str(word) for option in options.items() for word in option]
+    files = [str(task.measurement.resolve()) for task in tasks]
+    return ["infer", *files, *words, *(["--from-prior"] if settings.from_prior else [])]

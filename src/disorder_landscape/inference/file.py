@@ -1,0 +1,199 @@
+"""From the file of a measurement to the file of what `infer` finds, alone or as one of many."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import h5py
+import xarray as xr
+
+from disorder_landscape.arguments import ArgumentError, require
+from disorder_landscape.dataset.store import read_dataset, write_dataset
+from disorder_landscape.inference.infer import infer
+from disorder_landscape.inference.invert import Progress, silent
+from disorder_landscape.inference.plot import plot_inference
+from disorder_landscape.inference.problem.measurement import measurement_of
+from disorder_landscape.learning.model import CONFIG, NETWORK, SCALER
+from disorder_landscape.locks import kept_from_others
+
+ASKED = "asked"
+"""Attribute of a result: the measurement, the model and the options that it answers."""
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What `infer` is told about a measurement besides its file.
+
+    Parameters
+    ----------
+    model : Path
+        Folder.
+    noise : float or dict, optional
+    from_prior : bool
+    samples : int
+    seed : int
+        All four as in `infer`.
+    made : mapping
+        Provenance of the results.
+    """
+
+    model: Path
+    noise: float | dict[str, float] | None
+    from_prior: bool
+    samples: int
+    seed: int
+    made: Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class Task:
+    """A measurement, and where its result goes.
+
+    Parameters
+    ----------
+    measurement, output : Path
+        netCDF files.
+    plot : Path, optional
+    """
+
+    measurement: Path
+    output: Path
+    plot: Path | None = None
+
+    @property
+    def unfinished(self) -> Path:
+        """The file through which an interrupted inversion goes on."""
+        return self.output.with_name(f"{self.output.name}.unfinished.json")
+
+    @property
+    def is_done(self) -> bool:
+        """Whether all its files are there."""
+        return self.output.exists() and (self.plot is None or self.plot.exists())
+
+
+def tasks_of_folder(
+    measurements: Sequence[Path], output: Path, plots: Path | None, settings: Settings
+) -> list[Task]:
+    """Return one task for each measurement, with results of the same names in a folder.
+
+    Raises
+    ------
+    ArgumentError
+        If two measurements have one name, a result would replace its measurement, or the folder
+        holds the result of another measurement, model or option under one of these names.
+    """
+    names = [path.stem for path in measurements]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    must = "have names of their own, since their results have the same"
+    require(not twice, "measurement", must, f"there are several of {', '.join(twice)}")
+    model = _model(settings.model)
+    tasks = []
+    for path in measurements:
+        require(path.is_file(), "measurement", "be a netCDF file", f"there is no '{path}'")
+        plot = None if plots is None else plots / f"{path.stem}.png"
+        task = Task(path, output / f"{path.stem}.nc", plot)
+        same = task.output.resolve() == path.resolve()
+        must = "be another folder than that of the measurements"
+        require(not same, "output", must, f"both have '{path.name}'")
+        if task.output.exists():
+            stored = _asked_of(task.output)
+            must = "be a folder for results of these measurements with these options"
+            but = f"'{task.output}' is another one's (delete it, or give another folder)"
+            require(stored == _asked(path, settings, model), "output", must, but)
+        tasks.append(task)
+    return tasks
+
+
+def infer_file(settings: Settings, task: Task, progress: Progress = silent) -> xr.Dataset:
+    """Find what explains the measurement in a file, and write the result and its picture.
+
+    Of two processes with the same output one waits.
+
+    Raises
+    ------
+    ArgumentError
+        As `infer`, or if a file cannot be read or written.
+    """
+    with kept_from_others(task.output.parent, task.output.name):
+        measured = read_dataset(task.measurement)
+        result = infer(
+            measured,
+            settings.model,
+            settings.noise,
+            not settings.from_prior,
+            settings.samples,
+            settings.seed,
+            checkpoint=task.unfinished,
+            progress=progress,
+        )
+        if task.plot is not None:  # before the result, which tells that all is done
+            usual = {name: result.attrs[name] for name in ("theta", "barrier", "temperature")}
+            plot_inference(result, measurement_of(measured, usual, complete=False), task.plot)
+        asked = _asked(task.measurement, settings, _model(settings.model))
+        attrs = {**settings.made, ASKED: asked}
+        write_dataset(result, task.output, attrs, may_lack=["misfit"])  # of channels without data
+        task.unfinished.unlink(missing_ok=True)
+    return result
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of one of many measurements: a verdict, or the error that hindered it."""
+
+    task: Task
+    verdict: str = ""
+    error: str = ""
+
+
+def infer_one_of_many(settings: Settings, task: Task) -> Outcome:
+    """Do as `infer_file`; an error of one measurement does not hinder the others."""
+    try:
+        if task.is_done:  # by another process
+            return Outcome(task, verdict=str(read_dataset(task.output).attrs["verdict"]))
+        return Outcome(task, verdict=str(infer_file(settings, task).attrs["verdict"]))
+    except ArgumentError as error:
+        return Outcome(task, error=str(error))
+
+
+def _asked(measurement: Path, settings: Settings, model: str) -> str:
+    """Return what a result depends on, as JSON text."""
+    asked = {
+        "measurement": _hash([measurement]),
+        "model": model,
+        "noise": settings.noise,
+        "from_prior": settings.from_prior,
+        "samples": settings.samples,
+        "seed": settings.seed,
+    }
+    return json.dumps(asked, sort_keys=True)
+
+
+def _asked_of(output: Path) -> str:
+    """Return what a result says that it answers; nothing if it is no result."""
+    try:
+        with h5py.File(output) as file:
+            asked = file.attrs.get(ASKED, "")
+    except OSError:
+        return ""
+    return asked if isinstance(asked, str) else ""
+
+
+def _model(folder: Path) -> str:
+    """Return the hash of a model; one without a network serves from the prior."""
+    paths = [folder / name for name in (CONFIG, SCALER, NETWORK)]
+    return _hash([path for path in paths if path.exists()])
+
+
+def _hash(paths: Sequence[Path]) -> str:
+    content = hashlib.sha256()
+    for path in paths:
+        try:
+            content.update(path.read_bytes())
+        except OSError as error:
+            but = f"'{path}' cannot be read ({error.strerror})"
+            raise ArgumentError("file", "be readable", but) from None
+    return content.hexdigest()

@@ -1,0 +1,119 @@
+"""Inversions from file to file: one, many, and two processes that want the same."""
+
+import json
+from functools import partial
+
+import pytest
+import xarray as xr
+
+from command_line import landscape
+from disorder_landscape import ArgumentError, conductance
+from disorder_landscape.config import Config, DatasetConfig
+from disorder_landscape.dataset.realizations import realization
+from disorder_landscape.dataset.store import write_dataset
+from disorder_landscape.executors.local import LocalProcesses
+from disorder_landscape.inference.file import (
+    Settings,
+    Task,
+    infer_file,
+    infer_one_of_many,
+    tasks_of_folder,
+)
+
+CONFIG = DatasetConfig(
+    realizations=1, components=2, sites=60, mu_points=5, B_points=5, bias=(-0.03, 0.0, 0.03)
+)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A disorder model without a network, three measurements, and a file that is none."""
+    folder = tmp_path_factory.mktemp("many")
+    (folder / "model").mkdir()
+    content = {"config": Config(dataset=CONFIG).model_dump(mode="json")}
+    (folder / "model" / "config.json").write_text(json.dumps(content))
+    for i in range(3):
+        wire = realization(CONFIG, i).wire
+        write_dataset(conductance(wire, CONFIG.mu, CONFIG.B, CONFIG.bias), folder / f"{i}.nc", {})
+    (folder / "thesis.nc").write_text("Chapter 1")
+    return folder
+
+
+def settings_of(folder, **changes):
+    usual = {"noise": None, "from_prior": True, "samples": 4, "seed": 0, "made": {}}
+    return Settings(folder / "model", **{**usual, **changes})
+
+
+def tasks(folder, output, **changes):
+    measurements = [folder / f"{i}.nc" for i in range(3)]
+    return tasks_of_folder(measurements, output, None, settings_of(folder, **changes))
+
+
+def content(path):
+    return xr.load_dataset(path, engine="h5netcdf").drop_attrs(deep=False)
+
+
+@pytest.fixture(scope="module")
+def inferred(folder):
+    for task in tasks(folder, folder / "results"):
+        infer_file(settings_of(folder), task)
+    return folder / "results"
+
+
+def test_many_measurements_have_the_results_that_each_has_alone(
+    monkeypatch, capsys, folder, inferred, tmp_path
+):
+    files = [folder / f"{i}.nc" for i in range(3)]
+    command = ["infer", *files, folder / "thesis.nc", "--model", folder / "model", "--from-prior"]
+    command += ["--samples", 4, "-o", tmp_path / "out", "--plot", tmp_path / "pictures"]
+    code, out, said = landscape(monkeypatch, capsys, *command, "--share", "1/2")
+    assert (code, "2 results are there; new: 2 converged" in out) == (0, True)
+    made = (tmp_path / "out" / "0.nc").stat().st_mtime_ns
+    code, out, said = landscape(monkeypatch, capsys, *command)
+    assert (code, "3 results are there; new: 1 converged" in out) == (1, True)
+    assert "thesis.nc: Argument file must be a netCDF file" in out + said
+    assert "without a result: 1" in said
+    assert (tmp_path / "out" / "0.nc").stat().st_mtime_ns == made
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["0.nc", "1.nc", "2.nc"]
+    assert len(list((tmp_path / "pictures").glob("*.png"))) == 3
+    for i in range(3):
+        xr.testing.assert_identical(
+            content(tmp_path / "out" / f"{i}.nc"), content(inferred / f"{i}.nc")
+        )
+
+
+def test_the_result_of_another_question_is_not_replaced(folder, inferred):
+    assert all(task.is_done for task in tasks(folder, inferred))
+    for change in ({"noise": 0.01}, {"seed": 1}, {"samples": 6}):
+        with pytest.raises(ArgumentError, match="output must be a folder for results of these"):
+            tasks(folder, inferred, **change)
+
+
+@pytest.mark.parametrize("there", ["thesis", "measurement"])
+def test_a_file_that_is_no_result_is_not_replaced(folder, tmp_path, there):
+    source = folder / ("thesis.nc" if there == "thesis" else "1.nc")
+    (tmp_path / "0.nc").write_bytes(source.read_bytes())
+    with pytest.raises(ArgumentError, match="is another one's"):
+        tasks(folder, tmp_path)
+    assert (tmp_path / "0.nc").read_bytes() == source.read_bytes()
+
+
+def test_measurements_of_one_name_are_refused(folder, tmp_path):
+    settings = settings_of(folder)
+    twice = [folder / "0.nc", folder / "other" / "0.nc"]
+    with pytest.raises(ArgumentError, match="names of their own"):
+        tasks_of_folder(twice, tmp_path, None, settings)
+    with pytest.raises(ArgumentError, match="another folder than that of the measurements"):
+        tasks_of_folder([folder / "0.nc"], folder, None, settings)
+    with pytest.raises(ArgumentError, match="there is no"):
+        tasks_of_folder([folder / "none.nc"], tmp_path, None, settings)
+
+
+def test_of_two_processes_with_one_output_one_waits(folder, inferred, tmp_path):
+    """Both find the same, one after the other, and nothing else is left."""
+    same = [Task(folder / "0.nc", tmp_path / "0.nc")] * 2
+    infer_one = partial(infer_one_of_many, settings_of(folder))
+    outcomes = list(LocalProcesses(2).each_result(infer_one, same))
+    assert [outcome.verdict for outcome in outcomes] == ["converged"] * 2
+    assert [path.name for path in tmp_path.iterdir()] == ["0.nc"]
+    xr.testing.assert_identical(content(tmp_path / "0.nc"), content(inferred / "0.nc"))
