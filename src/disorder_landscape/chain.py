@@ -19,6 +19,7 @@ from tqdm import tqdm
 from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.config import Config, DatasetConfig, load_config
 from disorder_landscape.dataset import shards
+from disorder_landscape.dataset.mapped import MappedConductances
 from disorder_landscape.dataset.realizations import simulate
 from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
 from disorder_landscape.estimates import announce_repeated
@@ -188,8 +189,14 @@ def train(run: Run) -> None:
         return
     from disorder_landscape.learning.training import train as train_network
 
-    dataset = shards.read_shards(run.config.dataset, run.dataset_folder)
-    train_network(dataset, run.config, run.model_folder, "landscape train")
+    of_dataset = run.config.dataset, run.dataset_folder
+    train_network(
+        shards.read_disorder(*of_dataset),
+        run.config,
+        run.model_folder,
+        "landscape train",
+        conductances=MappedConductances(*of_dataset),
+    )
 
 
 def evaluate(run: Run) -> xr.Dataset:

@@ -6,7 +6,7 @@ is a function of the configuration alone, so workers, order and restarts leave n
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -19,7 +19,7 @@ from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
 from disorder_landscape.executors.executor import WHOLE, Executor, Share
 from disorder_landscape.executors.local import IN_THIS_PROCESS
-from disorder_landscape.model.quantities import CONDUCTANCES
+from disorder_landscape.model.quantities import AXES, CONDUCTANCES
 
 VARIABLES = (*CONDUCTANCES, "components", "alpha", "potential")
 """What is read back; `error` and `energies` of the solver are in most shards, for whoever asks."""
@@ -179,6 +179,13 @@ def make_shards(
         progress(realizations)
 
 
+def require_complete(config: DatasetConfig, folder: Path) -> None:
+    """Raise an ArgumentError if a shard is missing, damaged or of another configuration."""
+    now = status(config, folder)
+    must = f"hold {now.realizations_in_all} realizations (run `landscape generate`)"
+    require(now.complete, "dataset", must, f"'{folder}' holds {now.realizations}")
+
+
 def read_shards(config: DatasetConfig, folder: Path, first: int = 0) -> xr.Dataset:
     """Read the dataset, from realization `first` on, into memory.
 
@@ -187,15 +194,40 @@ def read_shards(config: DatasetConfig, folder: Path, first: int = 0) -> xr.Datas
     ArgumentError
         If a shard is missing, damaged or of another configuration.
     """
-    now = status(config, folder)
-    must = f"hold {now.realizations_in_all} realizations (run `landscape generate`)"
-    require(now.complete, "dataset", must, f"'{folder}' holds {now.realizations}")
+    require_complete(config, folder)
     first_shard = first // config.shard_size
     parts = [
-        read_dataset(shard_path(folder, k), VARIABLES)[list(VARIABLES)].isel(
-            realization=slice(len(shard_indices(config, k)))
-        )
-        for k in range(first_shard, shard_count(config))
+        _read_shard(config, folder, k, VARIABLES) for k in range(first_shard, shard_count(config))
     ]
-    whole = xr.concat(parts, "realization", data_vars="minimal", combine_attrs="drop_conflicts")
-    return whole.isel(realization=slice(first - first_shard * config.shard_size, None))
+    return _joined(parts).isel(realization=slice(first - first_shard * config.shard_size, None))
+
+
+def read_disorder(config: DatasetConfig, folder: Path) -> xr.Dataset:
+    """Read components, alpha and the potential's mean of a whole dataset, and its grid.
+
+    Of a million wires that is 100 MB.
+
+    Raises
+    ------
+    ArgumentError
+        As `read_shards`.
+    """
+    require_complete(config, folder)
+    parts = []
+    for k in range(shard_count(config)):
+        part = _read_shard(config, folder, k, ("components", "alpha", "potential"))
+        parts.append(part.assign(mean=part["potential"].mean("site")).drop_vars("potential"))
+    return _joined(parts)
+
+
+def _read_shard(
+    config: DatasetConfig, folder: Path, shard: int, variables: Collection[str]
+) -> xr.Dataset:
+    """Read some variables, and the grid, of the realizations that a dataset has in a shard."""
+    wanted = [*variables, *AXES]
+    whole = read_dataset(shard_path(folder, shard), wanted)[wanted]
+    return whole.isel(realization=slice(len(shard_indices(config, shard))))
+
+
+def _joined(parts: Iterable[xr.Dataset]) -> xr.Dataset:
+    return xr.concat(parts, "realization", data_vars="minimal", combine_attrs="drop_conflicts")

@@ -50,8 +50,19 @@ def write_dataset(
     with replacing(path) as temporary:
         # In memory first: HDF5 itself crashes where the disk is full.
         content = io.BytesIO(_empty_without_times())
-        dataset.assign_attrs(attrs).to_netcdf(content, mode="a", engine="h5netcdf")
+        dataset.assign_attrs(attrs).to_netcdf(
+            content, mode="a", engine="h5netcdf", encoding=_with_checksums(dataset)
+        )
         temporary.write_bytes(content.getvalue())
+
+
+def _with_checksums(dataset: xr.Dataset) -> dict[Hashable, dict[str, object]]:
+    """Return the encoding by which damaged numbers are an error when they are read."""
+    return {
+        name: {"fletcher32": True, "chunksizes": variable.shape}
+        for name, variable in dataset.variables.items()
+        if variable.size and variable.ndim and np.issubdtype(variable.dtype, np.number)
+    }
 
 
 def _empty_without_times() -> bytes:

@@ -9,21 +9,53 @@ from numpy.typing import NDArray
 
 from disorder_landscape.arguments import require
 from disorder_landscape.config import TrainingConfig
-from disorder_landscape.learning.mirror import mirrored_conductance, mirrored_labels
-from disorder_landscape.learning.scaling import ConductanceArray, InputScaler, LabelScaler
+from disorder_landscape.learning.mirror import MirrorImages, mirrored_conductance, mirrored_labels
+from disorder_landscape.learning.scaling import (
+    ConductanceArray,
+    Conductances,
+    InputScaler,
+    LabelScaler,
+)
 from disorder_landscape.model.parameters import FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """Some realizations of many, whose conductances are read when they are asked for.
+
+    Parameters
+    ----------
+    whole : Conductances
+    which : array of int, shape (realization,)
+    """
+
+    whole: Conductances
+    which: NDArray[np.intp]
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """(realization, mu, B, bias, channel)."""
+        return (len(self), *self.whole.shape[1:])
+
+    def __len__(self) -> int:
+        """Return how many realizations there are."""
+        return len(self.which)
+
+    def __getitem__(self, which: slice | NDArray[np.intp]) -> ConductanceArray:
+        """Return the conductances of some of them."""
+        return self.whole[self.which[which]]
 
 
 @dataclass(frozen=True, eq=False)
 class Examples:
     """The training realizations, and with `training.mirror` their mirror images behind them.
 
-    The images are made when they are asked for: a large dataset is in memory once.
+    Conductances and images are made when they are asked for: a dataset may exceed the memory.
 
     Parameters
     ----------
-    X : array, shape (realization, mu, B, bias, channel)
-        Conductances in e²/h.
+    X : Conductances, shape (realization, mu, B, bias, channel)
+        In e²/h.
     Y : array, shape (realization, label)
         Labels in meV and meV nm.
     components : int
@@ -32,7 +64,7 @@ class Examples:
         Says whether to mirror, and the noise.
     """
 
-    X: ConductanceArray
+    X: Conductances
     Y: FloatArray
     components: int
     training: TrainingConfig
@@ -47,7 +79,7 @@ class Examples:
 
     def fit_inputs(self) -> InputScaler:
         """Return the scaler of all examples' conductances."""
-        parts = [self.X, mirrored_conductance(self.X)] if self.training.mirror else [self.X]
+        parts = [self.X, MirrorImages(self.X)] if self.training.mirror else [self.X]
         return InputScaler.fit(*parts, noise=self.training.typical_noise)
 
     def labels(self, which: NDArray[np.intp]) -> FloatArray:

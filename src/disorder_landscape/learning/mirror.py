@@ -6,9 +6,12 @@ in the middle of the wire for even n and odd for odd n. α stays: its sign is a 
 
 from __future__ import annotations
 
-import numpy as np
+from dataclasses import dataclass
 
-from disorder_landscape.learning.scaling import CHANNELS, ConductanceArray
+import numpy as np
+from numpy.typing import NDArray
+
+from disorder_landscape.learning.scaling import CHANNELS, ConductanceArray, Conductances
 from disorder_landscape.model.parameters import FloatArray
 
 _SWAPPED = [CHANNELS.index(name.translate(str.maketrans("LR", "RL"))) for name in CHANNELS]
@@ -17,6 +20,26 @@ _SWAPPED = [CHANNELS.index(name.translate(str.maketrans("LR", "RL"))) for name i
 def mirrored_conductance(X: ConductanceArray) -> ConductanceArray:
     """Return the conductance of the mirrored wires, shape (…, channel)."""
     return X[..., _SWAPPED]
+
+
+@dataclass(frozen=True, eq=False)
+class MirrorImages:
+    """The conductances of the mirrored wires of others, made when they are asked for."""
+
+    X: Conductances
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """(realization, mu, B, bias, channel)."""
+        return self.X.shape
+
+    def __len__(self) -> int:
+        """Return how many realizations there are."""
+        return len(self.X)
+
+    def __getitem__(self, which: slice | NDArray[np.intp]) -> ConductanceArray:
+        """Return those of some realizations."""
+        return mirrored_conductance(self.X[which])
 
 
 def mirrored_labels(Y: FloatArray, components: int) -> FloatArray:

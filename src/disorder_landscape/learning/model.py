@@ -22,9 +22,10 @@ from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.config import Config, DatasetConfig
 from disorder_landscape.files import read_json, replacing, write_json
 from disorder_landscape.learning.backend import import_keras
-from disorder_landscape.learning.mirror import mirrored_conductance, mirrored_labels
+from disorder_landscape.learning.mirror import MirrorImages, mirrored_labels
 from disorder_landscape.learning.scaling import (
     ConductanceArray,
+    Conductances,
     InputScaler,
     LabelScaler,
 )
@@ -51,7 +52,7 @@ class TrainedModel:
     r2_by_label: Mapping[str, float] = field(default_factory=dict)
     """On the test realizations; empty before there are scores."""
 
-    def predict_labels(self, X: ConductanceArray) -> FloatArray:
+    def predict_labels(self, X: Conductances) -> FloatArray:
         """Return the labels in meV and meV nm that the network predicts.
 
         With `config.training.mirror` it is the mean of what the network says about the wire and of
@@ -59,7 +60,7 @@ class TrainedModel:
 
         Parameters
         ----------
-        X : array, shape (realization, mu, B, bias, channel)
+        X : Conductances, shape (realization, mu, B, bias, channel)
             In e²/h, as `scaling.conductance_array` gives it.
 
         Returns
@@ -68,7 +69,7 @@ class TrainedModel:
         """
         Y = self._predict(X)
         if self.config.training.mirror:
-            other = self._predict(mirrored_conductance(X))
+            other = self._predict(MirrorImages(X))
             Y = (Y + mirrored_labels(other, self.labels.components)) / 2
         return Y
 
@@ -76,10 +77,10 @@ class TrainedModel:
         """Return what goes into the network for conductances in e²/h, shape as X."""
         return X if self.inputs is None else self.inputs.scale(X)
 
-    def _predict(self, X: ConductanceArray) -> FloatArray:
-        x, batch = self.scale_inputs(X), self.config.training.batch_size
-        starts = range(0, len(x), batch)
-        y = [self.network.predict_on_batch(x[start : start + batch]) for start in starts]
+    def _predict(self, X: Conductances) -> FloatArray:
+        batch = self.config.training.batch_size
+        batches = (X[start : start + batch] for start in range(0, len(X), batch))
+        y = [self.network.predict_on_batch(self.scale_inputs(one)) for one in batches]
         return self.labels.unscale(np.concatenate(y).astype(np.float64))
 
     def save(self, folder: Path) -> None:

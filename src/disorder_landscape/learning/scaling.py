@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import Any, Protocol, Self
 
 import numpy as np
 import xarray as xr
@@ -16,6 +16,21 @@ from disorder_landscape.model.parameters import NOISE_FLOOR, FloatArray
 from disorder_landscape.model.quantities import AXES, CONDUCTANCES
 
 ConductanceArray = NDArray[np.float32]
+
+
+class Conductances(Protocol):
+    """Conductances of many realizations that may be in files: an array, as far as it is used."""
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """(realization, mu, B, bias, channel)."""
+
+    def __len__(self) -> int:
+        """Return how many realizations there are."""
+
+    def __getitem__(self, which: slice | NDArray[np.intp], /) -> ConductanceArray:
+        """Return those of some realizations, in memory."""
+
 
 CHANNELS = CONDUCTANCES
 """The network's input channels, in this order: the "4 different measurements" of S-II.2."""
@@ -73,7 +88,8 @@ def label_array(dataset: xr.Dataset, names: Sequence[str]) -> FloatArray:
     if "alpha" in names:
         columns.append(dataset["alpha"].to_numpy())
     if "mean" in names:
-        columns.append(dataset["potential"].mean("site").to_numpy())
+        mean = dataset["mean"] if "mean" in dataset else dataset["potential"].mean("site")
+        columns.append(mean.to_numpy())
     return np.column_stack(columns).astype(np.float64)
 
 
@@ -142,7 +158,7 @@ class InputScaler:
     std: ConductanceArray
 
     @classmethod
-    def fit(cls, *parts: ConductanceArray, noise: float = NOISE_FLOOR) -> Self:
+    def fit(cls, *parts: Conductances, noise: float = NOISE_FLOOR) -> Self:
         """Return the scaler of a training set.
 
         Parameters

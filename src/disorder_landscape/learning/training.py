@@ -25,11 +25,12 @@ from disorder_landscape.learning.checkpoints import (
 )
 from disorder_landscape.learning.curves import Epoch, plot_curves, write_curves
 from disorder_landscape.learning.ensembles import combine, member_configs
-from disorder_landscape.learning.examples import Examples, chosen, split
+from disorder_landscape.learning.examples import Examples, Rows, chosen, split
 from disorder_landscape.learning.metrics import Scores, score
 from disorder_landscape.learning.model import METRICS, TrainedModel, on_grid_of, read_model_file
 from disorder_landscape.learning.networks.build import build_network
 from disorder_landscape.learning.scaling import (
+    Conductances,
     conductance_array,
     label_array,
     label_names,
@@ -44,6 +45,7 @@ def train(
     folder: str | Path,
     command: str = "",
     progress: bool = True,
+    conductances: Conductances | None = None,
 ) -> Scores:
     """Train a network on a dataset and write the model's folder (what it holds: `model`).
 
@@ -67,6 +69,8 @@ def train(
         The command that started this, for the record.
     progress : bool
         Show a progress bar.
+    conductances : Conductances, optional
+        Those of the dataset, where it does not hold them itself since they may exceed the memory.
 
     Returns
     -------
@@ -82,11 +86,11 @@ def train(
     made_with = dataset.attrs.get("config_hash")
     but = f"its hash is {made_with}, the config's {config.dataset.hash}"
     require(made_with == config.dataset.hash, "dataset", "be the one the config describes", but)
-    dataset = on_grid_of(config.dataset, dataset, "dataset")
+    if conductances is None:
+        conductances = conductance_array(on_grid_of(config.dataset, dataset, "dataset"))
     training, test = split(dataset.sizes["realization"], config.training.test_fraction)
     used = chosen(training, config.training.realizations, config.training.seed)
-    X = conductance_array(dataset)
-    Y = label_array(dataset, names_of_labels(config))
+    rows, Y = np.arange(len(conductances)), label_array(dataset, names_of_labels(config))
     claim(folder, config, dataset, command)
     with kept_from_others(folder):
         if (folder / METRICS).exists():
@@ -95,16 +99,17 @@ def train(
             return Scores.from_dict(read_model_file(folder / METRICS))
 
         def scores(model: TrainedModel) -> Scores:
-            predicted = model.predict_labels(X[test])
+            predicted = model.predict_labels(Rows(conductances, rows[test]))
             return score(Y[test], predicted, model.labels, config.dataset.sites)
 
         if config.training.networks == 1:
-            examples = Examples(X[used], Y[used], config.dataset.components, config.training)
+            X = Rows(conductances, rows[used])
+            examples = Examples(X, Y[used], config.dataset.components, config.training)
             model, curves = _train_one(examples, config, folder, scores, progress)
         else:
             folders = [folder / f"network-{i + 1}" for i in range(config.training.networks)]
             for member, one in zip(folders, member_configs(config), strict=True):
-                train(dataset, one, member, command, progress)
+                train(dataset, one, member, command, progress, conductances)
             model, curves = combine(folders, config)
             write_curves(folder / "curves.csv", curves)
 

@@ -17,6 +17,7 @@ from pydantic import Field, model_validator
 from disorder_landscape.chain import Run, dataset_folder, generate
 from disorder_landscape.config import Config, checked
 from disorder_landscape.dataset import shards
+from disorder_landscape.dataset.mapped import MappedConductances
 from disorder_landscape.studies.study import Part, Place, Plan
 from disorder_landscape.studies.trainings_table import Result
 
@@ -126,8 +127,15 @@ def trained(run: PlannedRun, place: Place) -> Result:
     folder = model_folder(run, place.build)
     if not _is_finished(run, place):
         config = run.config
-        dataset = shards.read_shards(config.dataset, dataset_folder(config.dataset, place.build))
-        train(dataset, config, folder, "landscape study", progress=parent_process() is None)
+        of_dataset = config.dataset, dataset_folder(config.dataset, place.build)
+        train(
+            shards.read_disorder(*of_dataset),
+            config,
+            folder,
+            "landscape study",
+            progress=parent_process() is None,
+            conductances=MappedConductances(*of_dataset),
+        )
     return _result(run, folder)
 
 

@@ -14,7 +14,7 @@ FILTERS = (256, 512, 1028)
 
 
 def build_network(
-    input_shape: tuple[int, int, int, int],
+    input_shape: tuple[int, ...],
     outputs: int,
     width_fraction: float = 1.0,
     learning_rate: float = 1e-4,
