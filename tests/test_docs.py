@@ -62,3 +62,15 @@ def test_links_of_the_readme_lead_to_files():
     links = [link for link in re.findall(r"\]\(([^)]*)\)", README) if "://" not in link]
     assert links
     assert [link for link in links if not (REPOSITORY / link).is_file()] == []
+
+
+def test_each_promise_about_faults_is_held_by_a_test():
+    page = (REPOSITORY / "docs" / "faults.md").read_text("utf-8")
+    there = {
+        name
+        for path in (REPOSITORY / "tests").glob("**/test_*.py")
+        for name in re.findall(r"^def (test_\w+)", path.read_text("utf-8"), re.MULTILINE)
+    }
+    named = set(re.findall(r"`(test_\w+)`", page))
+    assert len(named) > 15
+    assert named <= there

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import glob
+import hashlib
 import json
 import os
 import shutil
@@ -14,6 +15,8 @@ from typing import Any
 
 from disorder_landscape.arguments import ArgumentError, require
 
+CHECKSUM = "checksum"
+"""Key of a JSON file, about all others."""
 _HOST = socket.gethostname()
 
 
@@ -90,18 +93,19 @@ def _remove(path: Path) -> None:
 
 
 def write_json(path: Path, content: Mapping[str, Any]) -> None:
-    """Write a JSON file; floats are written so that reading gives the same bits."""
+    """Write a JSON file with a checksum; floats are written so that reading gives the same bits."""
+    whole = {**content, CHECKSUM: _checksum(content)}
     with replacing(path) as temporary:
-        temporary.write_text(json.dumps(content, indent=1, ensure_ascii=False) + "\n", "utf-8")
+        temporary.write_text(json.dumps(whole, indent=1, ensure_ascii=False) + "\n", "utf-8")
 
 
 def read_json(path: Path, name: str, must: str) -> dict[str, Any]:
-    """Read a JSON file that holds an object.
+    """Read a JSON file that holds an object; return it without its checksum.
 
     Raises
     ------
     ArgumentError
-        If it cannot be read or holds something else: `name` must `must`.
+        If it cannot be read, holds something else or was changed: `name` must `must`.
     """
     try:
         content = json.loads(path.read_text("utf-8"))
@@ -111,4 +115,13 @@ def read_json(path: Path, name: str, must: str) -> dict[str, Any]:
     except ValueError as error:
         raise ArgumentError(name, must, f"'{path}' is not JSON: {error}") from None
     require(isinstance(content, dict), name, must, f"'{path}' holds no JSON object")
+    stated = content.pop(CHECKSUM, None)
+    same = stated in (None, _checksum(content))  # none in files of older versions
+    require(same, name, must, f"'{path}' was changed after it was written, or is damaged")
     return dict(content)
+
+
+def _checksum(content: Mapping[str, Any]) -> str:
+    """Return the SHA-256 of what a JSON file says, whatever its spaces and its order."""
+    as_read = json.loads(json.dumps(content))
+    return hashlib.sha256(json.dumps(as_read, sort_keys=True).encode()).hexdigest()

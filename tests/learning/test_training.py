@@ -12,7 +12,7 @@ from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.learning import training
 from disorder_landscape.learning.curves import read_curves
 from disorder_landscape.learning.examples import chosen, split
-from disorder_landscape.learning.model import load_model
+from disorder_landscape.learning.model import load_model, read_model_file
 from disorder_landscape.learning.scaling import conductance_array
 from disorder_landscape.learning.schedule import learning_rate, numbered_epochs
 from disorder_landscape.learning.training import train
@@ -59,7 +59,7 @@ def test_curves_follow_the_schedule(trained):
 def test_a_finished_training_is_left_alone(trained, config, dataset, capsys):
     before = content(trained)
     scores = train(dataset, config, trained)
-    assert scores.to_dict() == json.loads((trained / "metrics.json").read_text())
+    assert scores.to_dict() == read_model_file(trained / "metrics.json")
     assert "nothing to do" in capsys.readouterr().out
     assert content(trained) == before
 

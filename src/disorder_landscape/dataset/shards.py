@@ -12,6 +12,7 @@ from functools import partial
 from pathlib import Path
 
 import h5py
+import numpy as np
 import xarray as xr
 
 from disorder_landscape.arguments import ArgumentError, require
@@ -115,14 +116,16 @@ def _inspect(config: DatasetConfig, folder: Path, shard: int) -> tuple[bool, flo
     try:
         with h5py.File(path) as file:
             made_with, held = file.attrs.get("config_hash"), len(file["realization"])
-            error = file.attrs.get(LARGEST_ERROR)
-    except (OSError, KeyError, RuntimeError):
+            error, first = file.attrs.get(LARGEST_ERROR), file.attrs.get("first_index")
+    except (OSError, KeyError, RuntimeError, ValueError):
         must = "hold only whole shards"
         raise ArgumentError("dataset", must, f"'{path}' is damaged; delete it") from None
     must = "be a folder of this configuration's shards"
     require(
         made_with == config.hash, "dataset", must, f"'{path}' was made with another configuration"
     )
+    begins = np.array_equal(np.ravel(first), [shard_indices(config, shard).start])
+    require(begins, "dataset", must, f"'{path}' holds the realizations of another shard")
     return held >= len(shard_indices(config, shard)), None if error is None else float(error[0])
 
 

@@ -93,6 +93,8 @@ def read_dataset(path: str | Path, variables: Iterable[str] = ()) -> xr.Dataset:
     """
     must = "be a netCDF file (version 4)"
     try:
+        with h5py.File(path) as raw:
+            dict(raw.attrs)  # h5netcdf fails badly where these are damaged
         with xr.open_dataset(path, engine="h5netcdf") as file:
             dataset = file.load()
     except FileNotFoundError:

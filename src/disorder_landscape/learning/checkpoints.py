@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from dataclasses import asdict
 from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
@@ -14,7 +15,7 @@ from disorder_landscape.arguments import require
 from disorder_landscape.config import Config
 from disorder_landscape.files import replacing, write_json
 from disorder_landscape.learning.backend import import_keras
-from disorder_landscape.learning.curves import Epoch, read_curves, write_curves
+from disorder_landscape.learning.curves import Epoch
 from disorder_landscape.learning.model import (
     CONFIG,
     NETWORK,
@@ -23,6 +24,8 @@ from disorder_landscape.learning.model import (
     save_network,
 )
 
+CURVES = "curves.json"
+"""In a checkpoint: the record of each epoch."""
 PACKAGES = ("disorder-landscape", "keras", "numpy", "scikit-learn")
 """Packages whose versions a model records, besides the Keras backend's."""
 IDENTITY = (
@@ -78,16 +81,23 @@ def save_checkpoint(folder: Path, network: Any, curves: list[Epoch]) -> None:
     with replacing(folder / name) as unfinished:
         unfinished.mkdir()
         save_network(network, unfinished / NETWORK)
-        write_curves(unfinished / "curves.csv", curves)
+        write_json(unfinished / CURVES, {"epochs": [asdict(epoch) for epoch in curves]})
     drop_checkpoints(folder, keep=name)
 
 
 def load_checkpoint(folder: Path) -> tuple[Any, list[Epoch]] | None:
-    """Return the network and the curves after the last finished epoch, or None."""
+    """Return the network and the curves after the last finished epoch, or None.
+
+    Raises
+    ------
+    ArgumentError
+        If they are damaged.
+    """
     found = sorted(folder.glob("checkpoint-*"))
     if not found:
         return None
-    return load_network(found[-1] / NETWORK, compiled=True), read_curves(found[-1] / "curves.csv")
+    curves = read_model_file(found[-1] / CURVES).get("epochs", [])
+    return load_network(found[-1] / NETWORK, compiled=True), [Epoch(**epoch) for epoch in curves]
 
 
 def drop_checkpoints(folder: Path, keep: str = "") -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
 from itertools import pairwise
 from pathlib import Path
@@ -10,6 +11,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.files import replacing
 
 
@@ -39,19 +41,30 @@ def write_curves(path: Path, curves: list[Epoch]) -> None:
 
 
 def read_curves(path: Path) -> list[Epoch]:
-    """Read what `write_curves` wrote."""
-    with open(path, newline="", encoding="utf-8") as file:
-        return [
-            Epoch(
-                int(row["epoch"]),
-                int(row["set"]),
-                float(row["learning_rate"]),
-                float(row["loss"]),
-                float(row["validation_r2"]),
-                float(row["seconds"]),
-            )
-            for row in csv.DictReader(file)
-        ]
+    """Read what `write_curves` wrote.
+
+    Raises
+    ------
+    ArgumentError
+        If it is something else.
+    """
+    try:
+        with open(path, newline="", encoding="utf-8") as file:
+            return [_epoch(row) for row in csv.DictReader(file, strict=True)]
+    except (OSError, KeyError, TypeError, ValueError, csv.Error):
+        must = "have the curves of a training in curves.csv"
+        raise ArgumentError("model", must, f"'{path}' cannot be read") from None
+
+
+def _epoch(row: Mapping[str, str]) -> Epoch:
+    return Epoch(
+        int(row["epoch"]),
+        int(row["set"]),
+        float(row["learning_rate"]),
+        float(row["loss"]),
+        float(row["validation_r2"]),
+        float(row["seconds"]),
+    )
 
 
 def training_seconds(path: Path) -> float:

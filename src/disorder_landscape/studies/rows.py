@@ -11,19 +11,40 @@ from typing import Any
 
 import numpy as np
 
+from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.dataset.store import provenance
 from disorder_landscape.files import read_json, replacing, write_json
 from disorder_landscape.model.parameters import FloatArray
 
 Row = dict[str, str]
 
+CHECKSUM, CHECKSUM_BEFORE = "sha256", "sha256_before"
+"""Keys of a table's provenance: a run that is killed may leave either the new table or the last."""
+
 
 def read_rows(path: Path) -> list[Row]:
-    """Return the rows of a table; none if there is no file."""
+    """Return the rows of a table; none if there is no file.
+
+    Raises
+    ------
+    ArgumentError
+        If it cannot be read, or is not what was written.
+    """
     if not path.exists():
         return []
-    with open(path, newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+    must = "hold tables as studies have written them"
+    try:
+        content = path.read_bytes()
+        rows = list(csv.DictReader(io.StringIO(content.decode(), newline=""), strict=True))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        but = f"'{path}' cannot be read ({error})"
+        raise ArgumentError("output", must, but) from None
+    made = stored_numbers(path).get("provenance", {})
+    stated = [made[key] for key in (CHECKSUM, CHECKSUM_BEFORE) if key in made]
+    same = not stated or hashlib.sha256(content).hexdigest() in stated
+    but = f"'{path}' was changed, or is damaged; restore it, or delete the .json beside to keep it"
+    require(same, "output", must, but)
+    return rows
 
 
 def write_rows(path: Path, rows: Sequence[Row], command: str) -> None:
@@ -34,10 +55,12 @@ def write_rows(path: Path, rows: Sequence[Row], command: str) -> None:
     writer.writeheader()
     writer.writerows(rows)
     content = text.getvalue().encode()
+    made = {**provenance(command), CHECKSUM: hashlib.sha256(content).hexdigest()}
+    if path.exists():
+        made[CHECKSUM_BEFORE] = hashlib.sha256(path.read_bytes()).hexdigest()
+    write_json(path.with_suffix(".json"), {**stored_numbers(path), "provenance": made})
     with replacing(path) as temporary:
         temporary.write_bytes(content)
-    made = {**provenance(command), "sha256": hashlib.sha256(content).hexdigest()}
-    write_json(path.with_suffix(".json"), {**stored_numbers(path), "provenance": made})
 
 
 def stored_numbers(path: Path) -> dict[str, Any]:
