@@ -1,7 +1,8 @@
 """Figure S11: the learning curves behind Figure 2.
 
-R² on test realizations over training realizations, one panel for all numbers of components: dots
-are single trainings, lines go through their mean over seeds. Dotted: R² = 0.77.
+R² on test realizations over training realizations, by the paper's network and by the residual one,
+one colour for each number of components: dots are single trainings, lines go through their mean
+over seeds. Dotted: R² = 0.77.
 """
 
 from __future__ import annotations
@@ -11,36 +12,58 @@ from collections.abc import Sequence
 import matplotlib as mpl
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from command import Request, figure_script
 from disorder_landscape.studies.crossings import R2_AIMED_AT
 from disorder_landscape.studies.trainings_table import read_table
-from figure_2_scaling import TABLE
+from figure_2_scaling import TABLES
 from plotting import FULL_WIDTH, inches, trainings
 
 
 def data(request: Request) -> xr.Dataset:
-    """Return components, realizations, seed and R2 of every training (training)."""
-    return trainings(read_table(TABLE), ["realizations"])
+    """Return network, components, realizations, seed and R2 of every training (training)."""
+    return xr.concat(
+        [
+            trainings(read_table(table), ["realizations"]).assign(network=name)
+            for name, table in TABLES.items()
+        ],
+        "training",
+        data_vars="all",
+    )
 
 
 def draw(data: xr.Dataset) -> Figure:
     """Draw the figure."""
     figure = Figure(figsize=(FULL_WIDTH, 2.8))
-    axes = inches(figure, 0.52, 0.42, FULL_WIDTH - 1.5, 2.28)
+    width = (FULL_WIDTH - 1.65) / 2
     numbers = np.unique(data["components"])
-    colours = mpl.colormaps["viridis"](np.linspace(0.0, 0.9, len(numbers)))
-    for colour, n in zip(colours, numbers, strict=True):
+    colours = dict(
+        zip(numbers, mpl.colormaps["viridis"](np.linspace(0.0, 0.9, len(numbers))), strict=True)
+    )
+    low = max(0.0, float(data["R2"].min()) - 0.05)
+    for i, network in enumerate(TABLES):
+        axes = inches(figure, 0.52 + i * (width + 0.12), 0.42, width, 2.1)
+        of_network = data.isel(training=np.flatnonzero(data["network"] == network))
+        _draw_curves(axes, of_network, colours)
+        axes.axhline(R2_AIMED_AT, color="0.4", ls=":", lw=1)
+        axes.set(xscale="log", xlabel="training realizations", ylim=(low, 1.0), title=network)
+        if i:
+            axes.tick_params(labelleft=False)
+        else:
+            axes.set_ylabel("$R^2$ on test realizations")
+    handles = [mpl.lines.Line2D([], [], color=colour, lw=1) for colour in colours.values()]
+    axes.legend(handles, numbers, title="components", loc="upper left", bbox_to_anchor=(1.0, 1.03))
+    return figure
+
+
+def _draw_curves(axes: Axes, data: xr.Dataset, colours: dict[int, np.ndarray]) -> None:
+    for n in np.unique(data["components"]):
         of_n = data.isel(training=np.flatnonzero(data["components"] == n))
         mean = of_n["R2"].groupby(of_n["realizations"]).mean()
-        axes.plot(of_n["realizations"], of_n["R2"], ".", color=colour, ms=4, alpha=0.6)
-        axes.plot(mean["realizations"], mean, "-", color=colour, lw=1, label=f"{n}")
-    axes.axhline(R2_AIMED_AT, color="0.4", ls=":", lw=1)
-    axes.set(xscale="log", xlabel="training realizations", ylabel="$R^2$ on test realizations")
-    axes.set_ylim(max(0.0, float(data["R2"].min()) - 0.05), 1.0)
-    axes.legend(title="components", loc="upper left", bbox_to_anchor=(1.0, 1.03))
-    return figure
+        axes.plot(of_n["realizations"], of_n["R2"], ".", color=colours[n], ms=4, alpha=0.6)
+        axes.plot(mean["realizations"], mean, "-", color=colours[n], lw=1)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

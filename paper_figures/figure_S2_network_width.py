@@ -2,8 +2,8 @@
 
 Every convolution's filters are multiplied by the fraction on the axis. Each curve starts, at the
 full width that was affordable, with as many training realizations as give R² ≈ 0.77. Means over
-seeds; bars are their standard errors. Dotted: R² = 0.77. Drawn from results/network_width.csv,
-which `landscape study network_width` measures.
+seeds; bars are their standard errors. Dotted: R² = 0.77. Drawn from what
+`landscape study network_width_residual` has measured.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from plotting import COLUMN, inches, trainings
 
 SHIFT = 1.07
 """Of the outermost curves along the axis, a factor."""
-TABLE = REPOSITORY / "results" / "network_width.csv"
+TABLE = REPOSITORY / "results" / "network_width_residual.csv"
 
 
 def data(request: Request) -> xr.Dataset:

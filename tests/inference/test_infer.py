@@ -13,6 +13,7 @@ from disorder_landscape import ArgumentError, Nanowire, conductance
 from disorder_landscape.chain import FIVE, shipped_model
 from disorder_landscape.config import Config, DatasetConfig, TrainingConfig
 from disorder_landscape.dataset.realizations import realization
+from disorder_landscape.files import read_json
 from disorder_landscape.inference.invert import InversionSettings
 from disorder_landscape.inference.problem.measurement import measurement_of, settings_of
 from disorder_landscape.inference.problem.observation import (
@@ -206,7 +207,7 @@ def test_a_checkpoint_of_an_older_version_is_ignored(measured, inferred, tmp_pat
     checkpoint = tmp_path / "unfinished.json"
     checkpoint.write_text(json.dumps({64 * "0": old}))
     assert infer(measured, checkpoint=checkpoint).identical(inferred)
-    runs = json.loads(checkpoint.read_text())
+    runs = read_json(checkpoint, "checkpoint", "be one")
     assert runs.pop(64 * "0") == old
     (new,) = runs.values()
     assert "gauss_newton.0" in new
@@ -221,7 +222,7 @@ def test_a_run_with_another_network_starts_anew(measured, tmp_path):
             network.set_weights([2 * weights for weights in network.get_weights()])
         with pytest.raises(KeyboardInterrupt):
             dl.infer(measured, model, NOISE, checkpoint=checkpoint, progress=interrupt_at_once)
-        assert len(json.loads(checkpoint.read_text())) == runs
+        assert len(read_json(checkpoint, "checkpoint", "be one")) == runs
 
 
 def test_the_seed_decides(measured, inferred):
@@ -297,7 +298,7 @@ def test_the_network_guesses_if_nothing_is_missing_of_what_it_is_shown(measured,
         G = measured.assign(G_LL=measured["G_LL"].where(measured["mu"] != measured["mu"][missing]))
         with pytest.raises(KeyboardInterrupt):
             dl.infer(G, model, NOISE, checkpoint=checkpoint, progress=interrupt_at_once)
-        (notes,) = json.loads(checkpoint.read_text()).values()
+        (notes,) = read_json(checkpoint, "checkpoint", "be one").values()
         assert ("guess" in notes) == guessed
 
 
