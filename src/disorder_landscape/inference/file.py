@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -118,26 +119,35 @@ def infer_file(settings: Settings, task: Task, progress: Progress = silent) -> x
     ArgumentError
         As `infer`, or if a file cannot be read or written.
     """
-    with kept_from_others(task.output.parent, task.output.name):
-        measured = read_dataset(task.measurement)
-        result = infer(
-            measured,
-            settings.model,
-            settings.noise,
-            not settings.from_prior,
-            settings.samples,
-            settings.seed,
-            checkpoint=task.unfinished,
-            progress=progress,
-        )
-        if task.plot is not None:  # before the result, which tells that all is done
-            usual = {name: result.attrs[name] for name in ("theta", "barrier", "temperature")}
-            plot_inference(result, measurement_of(measured, usual, complete=False), task.plot)
-        asked = _asked(task.measurement, settings, _model(settings.model))
-        attrs = {**settings.made, ASKED: asked}
-        write_dataset(result, task.output, attrs, may_lack=["misfit"])  # of channels without data
-        task.unfinished.unlink(missing_ok=True)
+    with _alone_with(task):
+        return _infer_file(settings, task, progress)
+
+
+def _infer_file(settings: Settings, task: Task, progress: Progress = silent) -> xr.Dataset:
+    measured = read_dataset(task.measurement)
+    result = infer(
+        measured,
+        settings.model,
+        settings.noise,
+        not settings.from_prior,
+        settings.samples,
+        settings.seed,
+        checkpoint=task.unfinished,
+        progress=progress,
+    )
+    if task.plot is not None:  # before the result, which tells that all is done
+        usual = {name: result.attrs[name] for name in ("theta", "barrier", "temperature")}
+        plot_inference(result, measurement_of(measured, usual, complete=False), task.plot)
+    asked = _asked(task.measurement, settings, _model(settings.model))
+    attrs = {**settings.made, ASKED: asked}
+    write_dataset(result, task.output, attrs, may_lack=["misfit"])  # of channels without data
+    task.unfinished.unlink(missing_ok=True)
     return result
+
+
+def _alone_with(task: Task) -> AbstractContextManager[None]:
+    """Wait for other processes with the same output, and let them wait."""
+    return kept_from_others(task.output.parent, task.output.name)
 
 
 @dataclass(frozen=True)
@@ -152,9 +162,10 @@ class Outcome:
 def infer_one_of_many(settings: Settings, task: Task) -> Outcome:
     """Do as `infer_file`; an error of one measurement does not hinder the others."""
     try:
-        if task.is_done:  # by another process
-            return Outcome(task, verdict=str(read_dataset(task.output).attrs["verdict"]))
-        return Outcome(task, verdict=str(infer_file(settings, task).attrs["verdict"]))
+        with _alone_with(task):
+            by_another = task.is_done
+            result = read_dataset(task.output) if by_another else _infer_file(settings, task)
+        return Outcome(task, verdict=str(result.attrs["verdict"]))
     except ArgumentError as error:
         return Outcome(task, error=str(error))
 
