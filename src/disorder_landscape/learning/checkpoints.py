@@ -102,7 +102,7 @@ def load_checkpoint(folder: Path) -> tuple[Any, list[Epoch]] | None:
 
 def drop_checkpoints(folder: Path, keep: str = "") -> None:
     """Remove the checkpoints of a training, but for the one of the given name."""
-    for path in [*folder.glob("checkpoint-*"), *folder.glob(".writing-checkpoint-*")]:
+    for path in [*folder.glob("checkpoint-*"), *folder.glob(".writing-*checkpoint-*")]:
         if path.name != keep:
             shutil.rmtree(path)
 
