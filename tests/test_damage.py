@@ -34,8 +34,8 @@ DAMAGES = {
     "longer": lambda b, rng: b + rng.bytes(100),
     "swapped": lambda b, rng: b[len(b) // 2 :] + b[: len(b) // 2],
     "foreign": lambda b, rng: b"%PDF-1.4 " + rng.bytes(1000),
-    "inserted": lambda b, rng: (at := int(rng.integers(len(b)))) * b"" + b[:at] + b"x" + b[at:],
-    "lost": lambda b, rng: (at := int(rng.integers(len(b)))) * b"" + b[:at] + b[at + 1 :],
+    "inserted": lambda b, rng: _changed(b, rng, lambda x: b"x" + x, 1),
+    "lost": lambda b, rng: _changed(b, rng, lambda x: b"", 1),
 }
 
 

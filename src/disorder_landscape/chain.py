@@ -19,7 +19,6 @@ from tqdm import tqdm
 from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.config import Config, DatasetConfig, load_config
 from disorder_landscape.dataset import shards
-from disorder_landscape.dataset.mapped import MappedConductances
 from disorder_landscape.dataset.realizations import simulate
 from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
 from disorder_landscape.estimates import announce_repeated
@@ -187,16 +186,9 @@ def train(run: Run) -> None:
     if _holds_this_training(run):  # before the dataset is read and TensorFlow imported
         print(f"'{run.model_folder}' holds this very training, finished: nothing to do.")
         return
-    from disorder_landscape.learning.training import train as train_network
+    from disorder_landscape.learning.training import train_from_shards
 
-    of_dataset = run.config.dataset, run.dataset_folder
-    train_network(
-        shards.read_disorder(*of_dataset),
-        run.config,
-        run.model_folder,
-        "landscape train",
-        conductances=MappedConductances(*of_dataset),
-    )
+    train_from_shards(run.config, run.dataset_folder, run.model_folder, "landscape train")
 
 
 def evaluate(run: Run) -> xr.Dataset:

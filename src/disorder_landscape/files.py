@@ -40,11 +40,16 @@ def replacing(path: Path) -> Iterator[Path]:
         temporary.replace(path)
     except (OSError, RuntimeError) as error:  # HDF5 says RuntimeError when a disk is full
         reason = getattr(error, "strerror", None) or str(error).splitlines()[0]
-        but = f"'{path}' cannot be written ({reason})"
-        raise ArgumentError("folder", "be a place to write to", but) from None
+        raise unwritable(path, reason) from None
     finally:
         with suppress(OSError):
             _remove(temporary)
+
+
+def unwritable(path: Path, reason: str | None) -> ArgumentError:
+    """Return the error of a file or folder that cannot be written."""
+    but = f"'{path}' cannot be written ({reason})"
+    return ArgumentError("folder", "be a place to write to", but)
 
 
 def _remove_left_behind(path: Path) -> None:

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from disorder_landscape.arguments import ArgumentError
+from disorder_landscape.files import unwritable
 
 
 @contextmanager
@@ -38,8 +38,7 @@ def kept_from_others(folder: Path, name: str = "", shared: bool = False) -> Iter
         folder.mkdir(parents=True, exist_ok=True)
         handle = _locked(path, fcntl.LOCK_SH if shared else fcntl.LOCK_EX)
     except OSError as error:
-        but = f"'{folder}' cannot be written ({error.strerror})"
-        raise ArgumentError("folder", "be a place to write to", but) from None
+        raise unwritable(folder, error.strerror) from None
     try:
         yield
     finally:

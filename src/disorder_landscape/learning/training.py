@@ -14,6 +14,8 @@ from tqdm import tqdm
 
 from disorder_landscape.arguments import require
 from disorder_landscape.config import Config, TrainingConfig
+from disorder_landscape.dataset.mapped import MappedConductances
+from disorder_landscape.dataset.shards import read_disorder
 from disorder_landscape.estimates import Pace
 from disorder_landscape.files import write_json
 from disorder_landscape.learning.backend import import_keras
@@ -120,6 +122,15 @@ def train(
         write_json(folder / METRICS, final.to_dict())
         drop_checkpoints(folder)
         return final
+
+
+def train_from_shards(
+    config: Config, shards: Path, folder: Path, command: str, progress: bool = True
+) -> Scores:
+    """Do as `train`, with a dataset in a folder of shards that need not fit into memory."""
+    dataset = read_disorder(config.dataset, shards)
+    conductances = MappedConductances(config.dataset, shards)
+    return train(dataset, config, folder, command, progress, conductances)
 
 
 def _train_one(

@@ -16,8 +16,6 @@ from pydantic import Field, model_validator
 
 from disorder_landscape.chain import Run, dataset_folder, generate
 from disorder_landscape.config import Config, checked
-from disorder_landscape.dataset import shards
-from disorder_landscape.dataset.mapped import MappedConductances
 from disorder_landscape.studies.study import Part, Place, Plan
 from disorder_landscape.studies.trainings_table import Result
 
@@ -122,20 +120,13 @@ def generate_datasets(runs: Sequence[PlannedRun], place: Place) -> None:
 
 def trained(run: PlannedRun, place: Place) -> Result:
     """Return what a training has come to, after what is missing of it; its dataset is there."""
-    from disorder_landscape.learning.training import train
+    from disorder_landscape.learning.training import train_from_shards
 
     folder = model_folder(run, place.build)
     if not _is_finished(run, place):
-        config = run.config
-        of_dataset = config.dataset, dataset_folder(config.dataset, place.build)
-        train(
-            shards.read_disorder(*of_dataset),
-            config,
-            folder,
-            "landscape study",
-            progress=parent_process() is None,
-            conductances=MappedConductances(*of_dataset),
-        )
+        shards = dataset_folder(run.config.dataset, place.build)
+        alone = parent_process() is None
+        train_from_shards(run.config, shards, folder, "landscape study", progress=alone)
     return _result(run, folder)
 
 
