@@ -15,7 +15,7 @@ from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.chain import FIVE, Run, evaluation, preset_run
 from disorder_landscape.config import Config
 from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
-from disorder_landscape.files import replacing
+from disorder_landscape.files import write_picture
 from plotting import paper_style
 
 EVALUATED = [
@@ -133,5 +133,4 @@ def _parse(
 def _save(figure: Figure, path: Path) -> None:
     """Write a picture; the same figure gives the same bytes."""
     no_date = {"CreationDate": None} if path.suffix == ".pdf" else {}
-    with replacing(path) as temporary:
-        figure.savefig(temporary, metadata=no_date)
+    write_picture(path, figure, metadata=no_date)

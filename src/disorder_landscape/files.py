@@ -1,9 +1,10 @@
-"""Files and folders that are either whole or not there, and JSON files."""
+"""Files and folders that are either whole or not there, JSON files, pictures."""
 
 from __future__ import annotations
 
 import glob
 import hashlib
+import io
 import json
 import os
 import shutil
@@ -11,9 +12,12 @@ import socket
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from disorder_landscape.arguments import ArgumentError, require
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 CHECKSUM = "checksum"
 """Key of a JSON file, about all others."""
@@ -44,6 +48,15 @@ def replacing(path: Path) -> Iterator[Path]:
     finally:
         with suppress(OSError):
             _remove(temporary)
+
+
+def write_picture(path: Path, figure: Figure, **options: Any) -> None:
+    """Write a figure in the format that the path's ending names; options are those of savefig."""
+    # In memory first: Matplotlib complains on its own where the disk is full.
+    content = io.BytesIO()
+    figure.savefig(content, format=path.suffix.removeprefix("."), **options)
+    with replacing(path) as temporary:
+        temporary.write_bytes(content.getvalue())
 
 
 def unwritable(path: Path, reason: str | None) -> ArgumentError:

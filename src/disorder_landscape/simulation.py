@@ -10,7 +10,7 @@ import xarray as xr
 
 from disorder_landscape.arguments import ArgumentError, numbers_of, require
 from disorder_landscape.dataset.store import read_dataset
-from disorder_landscape.files import replacing
+from disorder_landscape.files import write_picture
 from disorder_landscape.model.parameters import FloatArray, Nanowire, checked_potential
 from disorder_landscape.model.quantities import CONDUCTANCES, with_units
 from disorder_landscape.observables.conductance import Progress, conductance
@@ -167,6 +167,5 @@ def plot_simulation(result: xr.Dataset, path: Path) -> None:
             G.plot.pcolormesh(x=x, y=y, ax=panel, cmap="RdBu_r", vmax=float(abs(G).max()) or 1.0)
         panel.set_title("")
     figure.suptitle(f"{axes[0]} = {float(shown[axes[0]]):.3g} {result[axes[0]].attrs['units']}")
-    with replacing(path) as temporary:
-        figure.savefig(temporary, dpi=150)
+    write_picture(path, figure, dpi=150)
     plt.close(figure)

@@ -171,25 +171,17 @@ def test_a_nan_fails_the_shard(tmp_path, monkeypatch):
     assert not list(tmp_path.iterdir())
 
 
-def test_a_full_disk_leaves_what_was_there(tmp_path):
-    """A file system without space: one sentence, and no half-written shard."""
-    script = (
-        "import resource\n"
-        "from pathlib import Path\n"
-        "from disorder_landscape.config import DatasetConfig\n"
-        "from disorder_landscape.dataset import shards\n"
-        "import signal; signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
-        f"config = DatasetConfig.model_validate_json({CONFIG.model_dump_json()!r})\n"
-        "from disorder_landscape.dataset.realizations import simulate\n"
-        "simulate(config, [0])\n"
-        "resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))\n"
-        f"shards.make_shard(config, Path({str(tmp_path)!r}), 0)\n"
-    )
-    command = [sys.executable, "-c", script]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode != 0
-    assert "ArgumentError: Argument folder must be a place to write to" in done.stderr
-    assert not list(tmp_path.iterdir())
+@pytest.mark.parametrize("year", [1980, 2100])
+def test_a_clock_that_was_moved_changes_nothing(made, tmp_path, year):
+    """What is there is there, whenever the clock says that it was written."""
+    for shard in (0, 2):
+        shards.make_shard(CONFIG, tmp_path, shard)
+        moment = (year - 1970) * 365 * 86400
+        os.utime(shards.shard_path(tmp_path, shard), (moment, moment))
+    added = []
+    shards.generate(CONFIG, tmp_path, progress=added.append)
+    assert sum(added) == 5
+    assert digests(tmp_path) == digests(made)
 
 
 def test_shares_of_a_dataset_make_the_same_bytes(made, tmp_path):

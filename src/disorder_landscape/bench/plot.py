@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from disorder_landscape.files import replacing
+from disorder_landscape.files import write_picture
 
 BOUND = 2500
 """The ratio that was asked for, per energy and per set."""
@@ -29,8 +29,7 @@ def plot(found: Mapping[str, Any], path: Path) -> None:
     left, right = figure.subplots(1, 2, width_ratios=(1, 1.1))
     _plot_lengths(left, found)
     _plot_ratios(right, found["Kwant / fast"])
-    with replacing(path) as temporary:
-        figure.savefig(temporary, dpi=200)
+    write_picture(path, figure, dpi=200)
 
 
 def _plot_lengths(axes: Any, found: Mapping[str, Any]) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from disorder_landscape.files import replacing
+from disorder_landscape.files import write_picture
 from disorder_landscape.inference.problem.measurement import Measurement
 from disorder_landscape.inference.report import alpha_with_std, error_bar
 from disorder_landscape.inference.verdict import CONVERGED
@@ -67,8 +67,7 @@ def plot_inference(result: xr.Dataset, measurement: Measurement, path: Path) -> 
         color = "k" if result.attrs["verdict"] == CONVERGED else "C3"
         title = f"{result.attrs['verdict']}; from {result.attrs['start']}"
         figure.suptitle(title, fontsize=8, color=color)
-        with replacing(path) as temporary:
-            figure.savefig(temporary, dpi=200)
+        write_picture(path, figure, dpi=200)
         plt.close(figure)
 
 

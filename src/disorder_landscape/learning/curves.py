@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from disorder_landscape.arguments import ArgumentError
-from disorder_landscape.files import replacing
+from disorder_landscape.files import replacing, write_picture
 
 
 @dataclass(frozen=True)
@@ -88,5 +88,4 @@ def plot_curves(path: Path, curves: list[Epoch]) -> None:
     axes.tick_params(which="both", labelsize=8)
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.legend(fontsize=8, frameon=False)
-    with replacing(path) as temporary:
-        figure.savefig(temporary, dpi=300)
+    write_picture(path, figure, dpi=300)

@@ -10,7 +10,7 @@ from matplotlib import style
 from matplotlib.figure import Figure
 
 from disorder_landscape.chain import REPOSITORY
-from disorder_landscape.files import replacing
+from disorder_landscape.files import write_picture
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.solver.compiled import core
 from disorder_landscape.studies.accuracy_cases import KINDS
@@ -172,8 +172,5 @@ def draw(measured: dict[str, FloatArray]) -> Figure:
 
 def save(measured: dict[str, FloatArray], path: Path) -> None:
     """Draw and write the picture."""
-    with (
-        style.context(REPOSITORY / "paper_figures" / "style.mplstyle"),
-        replacing(path) as temporary,
-    ):
-        draw(measured).savefig(temporary, dpi=200)
+    with style.context(REPOSITORY / "paper_figures" / "style.mplstyle"):
+        write_picture(path, draw(measured), dpi=200)

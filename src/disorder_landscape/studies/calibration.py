@@ -23,7 +23,7 @@ from scipy.stats import chi2, f, kstest, norm, uniform
 
 from disorder_landscape.arguments import require
 from disorder_landscape.config import Positive
-from disorder_landscape.files import replacing
+from disorder_landscape.files import write_picture
 from disorder_landscape.inference.attempt import best
 from disorder_landscape.inference.invert import invert
 from disorder_landscape.inference.posterior.markov_chain import independence_chain
@@ -186,5 +186,4 @@ def draw(table: pd.DataFrame, path: Path) -> None:
         panel.tick_params(labelsize=8)
     figure.supxlabel("quantile of the truth in the answer", fontsize=8)
     figure.supylabel("ECDF − uniform", fontsize=8)
-    with replacing(path) as temporary:
-        figure.savefig(temporary, dpi=200)
+    write_picture(path, figure, dpi=200)
