@@ -221,6 +221,17 @@ def test_a_folder_that_cannot_be_made_is_one_sentence(monkeypatch, capsys, tmp_p
     assert "landscape: Argument folder must be a place to write to" in err
 
 
+def test_too_little_memory_is_one_sentence(monkeypatch, capsys, tmp_path):
+    def asks_for_too_much(*_, **__):
+        return np.empty(10**17)
+
+    monkeypatch.setattr("disorder_landscape.simulation.simulate_wire", asks_for_too_much)
+    code, _, said = landscape(monkeypatch, capsys, "simulate", "-o", tmp_path / "wire.nc")
+    assert code == 2
+    assert "landscape: there is not enough memory (Unable to allocate 7" in said
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_every_command_helps_with_an_example(monkeypatch, capsys):
     commands = ["simulate", "generate", "status", "train", "evaluate", "predict"]
     commands += ["infer", "verify", "study", "bench"]

@@ -1,5 +1,7 @@
 """Processes of a pool: what they return, and that none outlives whoever waits for it."""
 
+import os
+import signal
 import subprocess
 import sys
 import time
@@ -8,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from disorder_landscape import ArgumentError
 from disorder_landscape.executors.local import LocalProcesses
 
 
@@ -59,6 +62,18 @@ def test_workers_end_with_a_killed_parent(tmp_path):
         parent.kill()
         parent.wait()
     wait_for(lambda: not goes_on())
+
+
+def killed_at_two(number):
+    """Do what the system does to a process where memory runs out."""
+    if number == 2:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return number
+
+
+def test_a_killed_worker_is_one_sentence():
+    with pytest.raises(ArgumentError, match="one of 2 was killed, as the system does where memory"):
+        list(LocalProcesses(2).each_result(killed_at_two, [1, 2, 3]))
 
 
 def wait_for(condition, seconds=180):

@@ -44,9 +44,12 @@ for command in (
 
 
 def main() -> None:
-    """Run the command line; bad input, or a missing part, is one sentence and exit code 2."""
+    """Run the command line; what cannot be done is one sentence, and exit code 2."""
     try:
         app()
     except (ArgumentError, MissingPartError) as error:
         print(f"landscape: {error}", file=sys.stderr)
+        sys.exit(2)
+    except MemoryError as error:
+        print(f"landscape: there is not enough memory ({error or 'for more'})", file=sys.stderr)
         sys.exit(2)

@@ -7,9 +7,11 @@ import signal
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from multiprocessing import active_children, get_context, parent_process
 
+from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.executors.executor import Result, Task
 from disorder_landscape.machine import cores
 from disorder_landscape.solver.compiled import core, threads_at_work
@@ -46,7 +48,13 @@ class LocalProcesses:
         tasks: Iterable[Task],
         may_be_ended: bool = False,
     ) -> Iterator[Result]:
-        """Yield what a function returns for each task (`Executor.each_result`)."""
+        """Yield what a function returns for each task (`Executor.each_result`).
+
+        Raises
+        ------
+        ArgumentError
+            If a worker was killed: all others end with it.
+        """
         if self.workers == 1:
             with threads_at_work(1):
                 yield from map(function, tasks)
@@ -57,6 +65,10 @@ class LocalProcesses:
             try:
                 for future in as_completed(futures):
                     yield future.result()
+            except BrokenProcessPool:
+                must = "be so many that their memory suffices"
+                but = f"one of {self.workers} was killed, as the system does where memory runs out"
+                raise ArgumentError("workers", must, but) from None
             except BaseException:
                 if may_be_ended:
                     for worker in set(active_children()) - before:
