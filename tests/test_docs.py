@@ -11,6 +11,7 @@ from disorder_landscape.model.parameters import Nanowire
 
 sys.path.insert(0, str(REPOSITORY / "docs" / "extensions"))  # as docs/conf.py does
 
+import licences
 import paper_formulas
 import wire_parameters
 
@@ -33,6 +34,14 @@ def test_every_parameter_of_a_wire_is_listed_with_its_range():
     assert rows[2].endswith("| 10 | 0.1 to 100 nm |")
     assert "V_Barrier on the first and on the last site" in rows[6]
     assert "| 15, 15 | -1,000 to 1,000 meV |" in rows[6]
+
+
+def test_every_package_has_a_licence_and_none_that_is_needed_is_under_the_gpl():
+    """What is under the GPL checks spelling, builds pages, or is compared with in one study."""
+    found = licences.licences()
+    assert "not stated" not in found
+    assert found["GPL"] == ["codespell", "docutils", "iterative-ensemble-smoother"]
+    assert sum(map(len, found.values())) > 140
 
 
 def test_a_function_is_what_the_test_calls_of_the_package():
