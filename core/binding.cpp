@@ -13,9 +13,11 @@
 
 #include "bare.hpp"
 #include "binding.hpp"
+#include "density.hpp"
 #include "derivatives/gradient.hpp"
 #include "isolated.hpp"
 #include "processor.hpp"
+#include "spectrum.hpp"
 #include "thermal/conductance.hpp"
 
 namespace nb = nanobind;
@@ -28,6 +30,7 @@ namespace {
 using namespace core;
 
 using Biases = nb::ndarray<const std::int64_t, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
+using LeadArray = nb::ndarray<const Amplitude, nb::shape<-1, -1, 2, 2, 2, 2>, nb::c_contig, nb::device::cpu>;
 using LeadSlopesArray = nb::ndarray<const Amplitude, nb::shape<-1, -1, 2, 2, 2, 2, 2>, nb::c_contig, nb::device::cpu>;
 
 // Run a computation in threads of its own, and look for Ctrl-C ten times a second.
@@ -77,6 +80,13 @@ ArrayOf<N> on_grid(const Matrix& V, const Matrix& parameters, const Vector& mu, 
     return out;
 }
 
+// From arrays (..., lead, charge, 2, 2).
+std::vector<LeadSelfEnergy> lead_self_energies_of(const Amplitude* entry, size_t size) {
+    std::vector<LeadSelfEnergy> leads(size / 16);
+    for (size_t k = 0; k < size; ++k) leads[k / 16].of[k / 4 % 4](int(k / 2 % 2), int(k % 2)) = entry[k];
+    return leads;
+}
+
 Array conductance(Matrix V, Matrix parameters, Vector mu, Vector B, Vector omega, double theta, double growth_limit) {
     return on_grid(V, parameters, mu, B, omega, theta, {V.shape(0), mu.size(), B.size(), omega.size(), 2, 4},
                    [&](const Grid& grid, double* out, Stop& stop) { bare_conductance(grid, growth_limit, out, stop); });
@@ -103,8 +113,7 @@ std::pair<Array, Array> conductance_gradient(Matrix V, Matrix parameters, Vector
                                              size_t bias_count, LeadSlopesArray slopes, double spin_orbit_slope,
                                              double growth_limit) {
     Wire wire = wires_of(V, parameters).front();
-    std::vector<LeadSelfEnergy> of_leads(slopes.size() / 16);
-    for (size_t k = 0; k < slopes.size(); ++k) of_leads[k / 16].of[k / 4 % 4](int(k / 2 % 2), int(k % 2)) = slopes.data()[k];
+    std::vector<LeadSelfEnergy> of_leads = lead_self_energies_of(slopes.data(), slopes.size());
     GradientGrid grid{wire,          mu.data(),         B.data(),        omega.data(),    int(mu.size()),  int(B.size()),
                       int(omega.size()), int(bias_count), biases.data(), of_leads.data(), spin_orbit_slope};
     Array by_V = new_array({4, mu.size(), B.size(), bias_count, V.shape(1)});
@@ -118,6 +127,23 @@ ComplexArray ends_of_isolated(Matrix V, Matrix parameters, Vector mu, Vector B, 
                               [&](const Grid& grid, Amplitude* out, Stop& stop) {
                                   isolated_ends(grid, y.data(), out, stop);
                               });
+}
+
+Array levels_of(Matrix V, Matrix parameters, Vector mu, Vector B, int count, double theta) {
+    return on_grid(V, parameters, mu, B, Vector(), theta, {V.shape(0), mu.size(), B.size(), size_t(count)},
+                   [&](const Grid& grid, double* out, Stop& stop) { levels_above_zero(grid, count, out, stop); });
+}
+
+// Of the one wire that there is; leads are as LeadSelfEnergy, (B, z) of them.
+std::pair<ComplexArray, Array> green_of_sites(Matrix V, Matrix parameters, Vector mu, Vector B, Vector x, Vector y,
+                                              LeadArray leads, double theta) {
+    Array growth = new_array({mu.size(), B.size(), x.size()});
+    std::vector<LeadSelfEnergy> of_leads = lead_self_energies_of(leads.data(), leads.size());
+    auto G = on_grid<Amplitude>(V, parameters, mu, B, x, theta, {mu.size(), B.size(), x.size(), V.shape(1), 2},
+                                [&](const Grid& grid, Amplitude* out, Stop& stop) {
+                                    local_green(grid, y.data(), of_leads.data(), out, growth.data(), stop);
+                                });
+    return {G, growth};
 }
 
 // Of the first wire, shape (energy, lead, charge, 2, 2), in meV.
@@ -183,6 +209,10 @@ NB_MODULE(CORE_MODULE, m) {
           nb::arg("growth_limit"));
     m.def("isolated_ends", &ends_of_isolated, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"),
           nb::arg("B"), nb::arg("x"), nb::arg("y"), nb::arg("theta"));
+    m.def("levels", &levels_of, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"), nb::arg("B"), nb::arg("count"),
+          nb::arg("theta"));
+    m.def("local_green", &green_of_sites, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"), nb::arg("B"), nb::arg("x"),
+          nb::arg("y"), nb::arg("leads"), nb::arg("theta"));
     m.def("lead_self_energies", &lead_self_energies, nb::arg("V"), nb::arg("parameters"), nb::arg("B"), nb::arg("omega"),
           nb::arg("theta"));
     m.def("thermal_weights", &thermal_weights, nb::arg("bias"), nb::arg("kT"), nb::arg("nodes"));

@@ -9,7 +9,10 @@ from typing import TYPE_CHECKING, Any
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.model.parameters import Nanowire
 from disorder_landscape.observables.conductance import conductance
+from disorder_landscape.observables.density_of_states import local_density_of_states
+from disorder_landscape.observables.gap import gap
 from disorder_landscape.observables.gradient import conductance_gradient
+from disorder_landscape.observables.modes import modes
 from disorder_landscape.observables.visibility import topological_visibility
 from disorder_landscape.parts import MissingPartError, needs
 
@@ -24,7 +27,10 @@ __all__ = [
     "Nanowire",
     "conductance",
     "conductance_gradient",
+    "gap",
     "infer",
+    "local_density_of_states",
+    "modes",
     "predict",
     "topological_visibility",
     "verify",

@@ -1,9 +1,10 @@
-"""What `landscape simulate` does: read a potential, collect conductance and T_IV, plot them."""
+"""What `landscape simulate` does: make a wire, collect conductance and T_IV, plot them."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -11,6 +12,7 @@ import xarray as xr
 from disorder_landscape.arguments import ArgumentError, numbers_of, require
 from disorder_landscape.dataset.store import read_dataset
 from disorder_landscape.files import write_picture
+from disorder_landscape.model.disorder import disorder_realization
 from disorder_landscape.model.parameters import FloatArray, Nanowire, checked_potential
 from disorder_landscape.model.quantities import CONDUCTANCES, with_units
 from disorder_landscape.observables.conductance import Progress, conductance
@@ -85,6 +87,32 @@ def parse_barrier(text: str) -> tuple[float, float]:
     """
     values = numbers_of("barrier", text, (1, 2), "be a number in meV, or two like 15,12")
     return values[0], values[-1]
+
+
+def chosen_wire(
+    potential: Path | None, seed: int | None, components: int, sites: int, **parameters: Any
+) -> Nanowire:
+    """Return the wire that the options of a command describe.
+
+    Its potential is that of a file, or is drawn with a seed, or is zero.
+
+    Raises
+    ------
+    ArgumentError
+        If both are given, or one of the numbers cannot be.
+    """
+    both = "one of --potential and --seed at most"
+    require(potential is None or seed is None, "potential", f"come with {both}", "both are given")
+    require(sites >= 2, "sites", "be 2 or more", f"it is {sites}")
+    must = f"be from 0 to {sites - 1}"
+    require(0 <= components < sites, "components", must, f"it is {components}")
+    if potential is not None:
+        V = read_potential(potential, sites)
+    elif seed is None or components == 0:
+        V = np.zeros(sites)
+    else:
+        V = disorder_realization(np.random.default_rng(seed), components, sites)[1]
+    return Nanowire(V, **parameters)
 
 
 def simulate_wire(

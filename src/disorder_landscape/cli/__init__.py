@@ -11,6 +11,7 @@ from disorder_landscape.cli.bench import bench
 from disorder_landscape.cli.evaluate import evaluate
 from disorder_landscape.cli.generate import generate
 from disorder_landscape.cli.infer import infer
+from disorder_landscape.cli.modes import modes
 from disorder_landscape.cli.predict import predict
 from disorder_landscape.cli.simulate import simulate
 from disorder_landscape.cli.status import status
@@ -30,6 +31,7 @@ app = typer.Typer(
 
 for command in (
     simulate,
+    modes,
     generate,
     status,
     train,

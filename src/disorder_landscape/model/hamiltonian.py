@@ -47,8 +47,11 @@ TAU_Z_SIGMA_Y = tau_sigma("z", "y")
 PARTICLE_HOLE = tau_sigma("y", "y")
 
 
-def self_energy(wire: Nanowire, omega: float) -> ComplexArray:
-    """Return Σ(ω) of the parent superconductor, shape (4, 4), in meV; |ω| < Δ₀."""
+def self_energy(wire: Nanowire, omega: complex) -> ComplexArray:
+    """Return Σ(ω) of the parent superconductor, shape (4, 4), in meV.
+
+    |ω| < Δ₀, or Im ω > 0.
+    """
     factor = wire.gamma / np.sqrt(wire.delta0**2 - np.asarray(omega) ** 2)
     return np.asarray(-factor * (omega * np.eye(4) + wire.delta0 * TAU_X))
 
@@ -59,7 +62,7 @@ def zeeman(V_Z: float, theta: float) -> ComplexArray:
 
 
 def onsite(
-    wire: Nanowire, V: FloatArray, mu: float, B: float, omega: float, theta: float = 0.0
+    wire: Nanowire, V: FloatArray, mu: float, B: float, omega: complex, theta: float = 0.0
 ) -> ComplexArray:
     """Return the onsite terms of sites with the given potentials, shape (site, 4, 4), in meV."""
     kinetic = (2 * wire.hopping - mu + np.asarray(V))[:, None, None] * TAU_Z
@@ -84,7 +87,7 @@ def lead_hopping(wire: Nanowire) -> ComplexArray:
 
 
 def wire_hamiltonian(
-    wire: Nanowire, mu: float, B: float, omega: float, theta: float = 0.0
+    wire: Nanowire, mu: float, B: float, omega: complex, theta: float = 0.0
 ) -> ComplexArray:
     """Return the whole matrix of the isolated wire, shape (4·site, 4·site), for checks."""
     n = wire.sites
@@ -94,3 +97,23 @@ def wire_hamiltonian(
     H[sites[:-1], :, sites[1:], :] = hopping(wire)
     H[sites[1:], :, sites[:-1], :] = hopping(wire).conj().T
     return H.reshape(4 * n, 4 * n)
+
+
+def banded(blocks: ComplexArray, coupling: ComplexArray) -> ComplexArray:
+    """Return a block-tridiagonal matrix as `scipy.linalg.solve_banded` takes it, (15, 4·site).
+
+    Parameters
+    ----------
+    blocks : array, shape (site, 4, 4)
+        On the diagonal.
+    coupling : array, shape (4, 4)
+        From site i+1 to site i; its adjoint couples the other way.
+    """
+    n, reach = len(blocks), 7
+    band = np.zeros((2 * reach + 1, 4 * n), dtype=complex)
+    for i in range(4):
+        for j in range(4):
+            band[reach + i - j, j::4] = blocks[:, i, j]
+            band[reach + i - j - 4, 4 + j :: 4] = coupling[i, j]
+            band[reach + i - j + 4, j : 4 * (n - 1) : 4] = coupling.conj().T[i, j]
+    return band

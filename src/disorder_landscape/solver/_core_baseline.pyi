@@ -67,6 +67,24 @@ def isolated_ends(
     y: FloatArray,
     theta: float,
 ) -> ComplexArray: ...
+def levels(
+    V: FloatArray,
+    parameters: FloatArray,
+    mu: FloatArray,
+    B: FloatArray,
+    count: int,
+    theta: float,
+) -> FloatArray: ...
+def local_green(
+    V: FloatArray,
+    parameters: FloatArray,
+    mu: FloatArray,
+    B: FloatArray,
+    x: FloatArray,
+    y: FloatArray,
+    leads: ComplexArray,
+    theta: float,
+) -> tuple[ComplexArray, FloatArray]: ...
 def lead_self_energies(
     V: FloatArray, parameters: FloatArray, B: float, omega: FloatArray, theta: float
 ) -> ComplexArray: ...

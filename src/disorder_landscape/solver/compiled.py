@@ -31,6 +31,8 @@ __all__ = [
     "in_rotated_frame",
     "isolated_ends",
     "lead_self_energies",
+    "levels",
+    "local_green",
     "reflection_determinant",
     "thermal_conductance",
     "threads_at_work",
@@ -246,6 +248,53 @@ def isolated_ends(
     x, y = np.ascontiguousarray(z.real), np.ascontiguousarray(z.imag)
     G: ComplexArray = core.isolated_ends(*handed_over(wires), mu, B, x, y, theta)
     return G
+
+
+def levels(
+    wires: Sequence[Nanowire], mu: FloatArray, B: FloatArray, count: int, theta: float = 0.0
+) -> FloatArray:
+    """Return the lowest levels ≥ 0 of wires without leads and dissipation, in meV.
+
+    Returns
+    -------
+    array, shape (wire, mu, B, level)
+        To 1e-12 meV; NaN where there are no more below the gap.
+    """
+    E: FloatArray = core.levels(*handed_over(wires), mu, B, count, theta)
+    return E
+
+
+def local_green(
+    wire: Nanowire,
+    mu: FloatArray,
+    B: FloatArray,
+    z: ComplexArray,
+    sigma: ComplexArray,
+    theta: float = 0.0,
+) -> tuple[ComplexArray, FloatArray]:
+    """Return the Green's function of a wire with leads on each site, summed over the spin.
+
+    Parameters
+    ----------
+    wire : Nanowire
+    mu, B : array
+    z : array, shape (z,)
+        Energies with Im z ≥ 0, none of them ±Δ₀, in meV.
+    sigma : array, shape (B, z, lead, charge, 2, 2)
+        Self-energies of the leads, spin not rotated, in meV.
+    theta : float
+
+    Returns
+    -------
+    array, shape (mu, B, z, site, 2)
+        Traces over the spin of electrons and of holes, in 1/meV.
+    array, shape (mu, B, z)
+        The largest inverse pivot, in units of 1/t': about as many ulps are lost.
+    """
+    x, y = np.ascontiguousarray(z.real), np.ascontiguousarray(z.imag)
+    turned = np.ascontiguousarray(in_rotated_frame(wire, sigma) / wire.rotated_hopping)
+    G, growth = core.local_green(*handed_over([wire]), mu, B, x, y, turned, theta)
+    return G, growth
 
 
 def lead_self_energies(

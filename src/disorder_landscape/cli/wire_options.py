@@ -1,0 +1,29 @@
+"""The options of commands that make one wire."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+PotentialFile = Annotated[
+    Path | None, typer.Option(help="V_dis per site in meV: .csv, .npy or .nc file.")
+]
+PotentialSeed = Annotated[
+    int | None, typer.Option(min=0, help="Draw the potential with this seed instead.")
+]
+Components = Annotated[
+    int, typer.Option(help="Disorder components of a drawn potential; 0: pristine.")
+]
+Sites = Annotated[int, typer.Option(help="Sites of the wire, 10 nm each.")]
+Alpha = Annotated[float, typer.Option(help="Spin-orbit coupling in meV nm.")]
+LandeG = Annotated[float, typer.Option("--g", help="Lande g-factor.")]
+Gamma = Annotated[float, typer.Option(help="Coupling to the superconductor in meV.")]
+Delta0 = Annotated[float, typer.Option(help="Gap of the superconductor in meV.")]
+Barrier = Annotated[
+    str, typer.Option(help="Barrier on the end sites in meV: one number, or left,right.")
+]
+Angle = Annotated[
+    float, typer.Option("--theta", help="Angle of the field relative to the wire in degrees.")
+]

@@ -1,0 +1,151 @@
+"""Where in a wire electrons and holes of an energy are: the local density of states.
+
+It is −Im Tr G/π on each site, G the Green's function of the wire with its leads. What is thermally
+broadened, convolved with −df/dω, is a line integral above the real axis: there G has no poles, so
+that two energies for each kT are enough, however narrow its peaks are.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+from scipy.linalg import solve_banded
+
+from disorder_landscape.arguments import grid_in, number_in, require
+from disorder_landscape.model.hamiltonian import FULL_TURN, ComplexArray, banded, hopping, onsite
+from disorder_landscape.model.parameters import BOLTZMANN, FloatArray, Nanowire
+from disorder_landscape.model.quantities import with_units
+from disorder_landscape.solver import compiled
+from disorder_landscape.solver.compiled import GROWTH_LIMIT
+from disorder_landscape.solver.lead_continuation import continued_self_energies
+
+LIMIT = 100.0
+"""Largest |energy| that is accepted, in meV."""
+NEAREST = 1e-9
+"""An energy nearer to ±Δ₀ than this part of it is taken that far below it: there Σ is infinite."""
+HEIGHT = np.pi / 2
+"""How far in kT the line of integration is above the real axis: halfway to the kernel's pole."""
+SPACING = 0.5
+"""Distance in kT of the energies on it; the rule's error is exp(−2π HEIGHT/SPACING) = 3e-9."""
+REACH = 20.0
+"""The line reaches this many kT beyond the energies, where 2e-9 of the kernel is cut."""
+SIZE = 2**22
+"""Numbers (B, energy, site) that are calculated at a time."""
+
+
+def local_density_of_states(
+    wire: Nanowire,
+    mu: ArrayLike,
+    B: ArrayLike,
+    energy: ArrayLike,
+    temperature: float = 0.0,
+    theta: float = 0.0,
+) -> xr.Dataset:
+    """Return the local density of states of a wire with its leads attached.
+
+    Parameters
+    ----------
+    wire : Nanowire
+    mu, B, energy : float or array
+        Chemical potentials in meV, fields in T, energies in meV from the Fermi level; increasing.
+        Energies above the gap are allowed.
+    temperature : float
+        In K. 0 gives what is at these very energies, where a peak may be too narrow for any grid;
+        else it is broadened by −df/dω, as a tunnelling probe sees it.
+    theta : float
+        Angle of the field relative to the wire in radians.
+
+    Returns
+    -------
+    xarray.Dataset
+        LDOS_electron and LDOS_hole, dims (mu, B, energy, site), in 1/meV per site, summed over the
+        spin. The hole part at an energy is the electron part at minus the energy.
+
+    Raises
+    ------
+    ArgumentError
+        If the wire is not one, a grid is empty, unsorted or out of range, or the temperature is.
+    """
+    require(isinstance(wire, Nanowire), "wire", "be a Nanowire", f"it is {wire!r}")
+    grids = {
+        "mu": grid_in("mu", mu, -1e3, 1e3, "meV"),
+        "B": grid_in("B", B, -100.0, 100.0, "T"),
+        "energy": grid_in("energy", energy, -LIMIT, LIMIT, "meV"),
+    }
+    temperature = number_in("temperature", temperature, 0.0, 10.0, "K")
+    theta = number_in("theta", theta, -FULL_TURN, FULL_TURN, "radians")
+    if temperature > 0:
+        z, weights = _line(grids["energy"], BOLTZMANN * temperature)
+    else:
+        z, weights = _off_the_edge(grids["energy"], wire.delta0).astype(complex), None
+    density = np.empty((*(grid.size for grid in grids.values()), wire.sites, 2))
+    at_once = max(1, SIZE // (z.size * wire.sites))
+    for f, field in enumerate(grids["B"]):
+        sigma = _leads(wire, float(field), z, theta)
+        for first in range(0, grids["mu"].size, at_once):
+            some = slice(first, first + at_once)
+            G = _green(wire, grids["mu"][some], float(field), z, sigma, theta)
+            averaged = G if weights is None else np.moveaxis(np.tensordot(weights, G, (1, 1)), 1, 0)
+            density[some, f] = -averaged.imag / np.pi
+    dims = (*grids, "site")
+    data = {f"LDOS_{name}": (dims, density[..., k]) for k, name in enumerate(("electron", "hole"))}
+    attrs = {"temperature": temperature, "theta": theta}
+    coordinates = {**grids, "site": np.arange(wire.sites)}
+    return with_units(xr.Dataset(data, coords=coordinates, attrs=attrs))
+
+
+def _line(energy: FloatArray, kT: float) -> tuple[ComplexArray, ComplexArray]:
+    """Return energies above the real axis, shape (z,), and weights of G there, (energy, z)."""
+    step = SPACING * kT
+    count = int(np.ceil((energy[-1] - energy[0] + 2 * REACH * kT) / step))
+    z = energy[0] - REACH * kT + step * np.arange(count + 1) + 1j * HEIGHT * kT
+    kernel = (
+        step
+        / (4 * kT)
+        / np.cosh(np.clip((z - energy[:, None]).real / (2 * kT), -300, 300) + 1j * HEIGHT / 2) ** 2
+    )
+    return z, kernel
+
+
+def _off_the_edge(energy: FloatArray, delta0: float) -> FloatArray:
+    """Return the energies, those at ±Δ₀ moved a little below."""
+    at_edge = abs(abs(energy) - delta0) < NEAREST * delta0
+    return np.where(at_edge, np.copysign(delta0 * (1 - NEAREST), energy), energy)
+
+
+def _leads(wire: Nanowire, B: float, z: ComplexArray, theta: float) -> ComplexArray:
+    """Return Σ of the leads, shape (z, lead, charge, 2, 2)."""
+    if z[0].imag > 0:
+        return continued_self_energies(wire, B, z, theta)
+    return compiled.lead_self_energies(wire, B, np.ascontiguousarray(z.real), theta)
+
+
+def _green(
+    wire: Nanowire,
+    mu: FloatArray,
+    B: float,
+    z: ComplexArray,
+    sigma: ComplexArray,
+    theta: float,
+) -> ComplexArray:
+    """Return G summed over the spin, shape (mu, z, site, 2), pivoted where digits were lost."""
+    G, growth = compiled.local_green(wire, mu, np.array([B]), z, sigma[None], theta)
+    for m, e in np.argwhere(~(growth[:, 0] < GROWTH_LIMIT)):
+        G[m, 0, e] = _pivoted_green(wire, float(mu[m]), B, complex(z[e]), sigma[e], theta)
+    return G[:, 0]
+
+
+def _pivoted_green(
+    wire: Nanowire, mu: float, B: float, z: complex, sigma: ComplexArray, theta: float
+) -> ComplexArray:
+    """Return G summed over the spin, shape (site, 2), by elimination with pivoting."""
+    z = complex(z.real, max(z.imag, np.finfo(float).tiny))  # which side of the real axis it is on
+    blocks = z * np.eye(4) - onsite(wire, wire.potential_with_barriers, mu, B, z, theta)
+    for site, of_charges in ((0, sigma[0]), (-1, sigma[1])):
+        for charge in range(2):
+            own = slice(2 * charge, 2 * charge + 2)
+            blocks[site, own, own] -= of_charges[charge]
+    columns = solve_banded((7, 7), banded(blocks, -hopping(wire)), np.eye(4 * wire.sites))
+    diagonal = np.diagonal(columns).reshape(wire.sites, 2, 2)
+    return np.asarray(diagonal.sum(axis=2))
