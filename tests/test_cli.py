@@ -70,7 +70,7 @@ def test_simulate_draws_the_same_potential_for_the_same_seed(monkeypatch, capsys
         (["--mu", "0:1:0"], "Argument mu must be a number or an increasing list"),
         (["--B", "x"], "Argument B must be a number, a list"),
         (["--solver", "magic"], "Argument solver must be 'fast' or 'kwant'"),
-        (["--sites", "1"], "Argument sites must be 2 or more, but it is 1."),
+        (["--sites", "1"], "Argument sites must be a number from 2 to 100000, but it is 1."),
         (["--components", "400"], "Argument components must be from 0 to 299, but it is 400."),
         (["--potential", "no.csv"], "there is no 'no.csv'"),
         (["--potential", "words.csv"], "Argument potential must be a .csv, .npy or .nc file"),

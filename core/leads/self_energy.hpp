@@ -53,7 +53,11 @@ struct LeadSelfEnergy {
 struct LeadParameters {
     double t, s, zeeman, mu;
     LeadParameters(const Wire& wire, double B)
-        : t(wire.hopping), s(wire.lead_spin_orbit_hopping), zeeman(wire.lead_zeeman_per_tesla * B), mu(wire.lead_mu) {}
+        : t(wire.hopping), s(some(wire.lead_spin_orbit_hopping)), zeeman(some(wire.lead_zeeman_per_tesla * B)), mu(wire.lead_mu) {}
+
+private:
+    // x, or zero where its square would be.
+    static double some(double x) { return std::abs(x) < 1e-100 ? 0.0 : x; }
 };
 
 namespace detail {

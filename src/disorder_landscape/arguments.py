@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+SHOWN = 100
+"""Characters of a value that a message shows."""
 
 
 class ArgumentError(ValueError):
@@ -24,6 +29,36 @@ def require(condition: bool, name: str, must: str, but: str) -> None:
         raise ArgumentError(name, must, but)
 
 
+def shown(value: object) -> str:
+    """Return a value in one short line."""
+    try:
+        text = " ".join(repr(value).split())
+    except ValueError:  # Python does not write numbers of so many digits
+        return "a number of thousands of digits"
+    return text if len(text) <= SHOWN else f"{text[:SHOWN]}…"
+
+
+def reals(name: str, values: ArrayLike, must: str) -> NDArray[np.float64]:
+    """Return real numbers as a new array of floats; what is beyond their range is infinite.
+
+    Raises
+    ------
+    ArgumentError
+        If there is anything else: complex numbers, truth values, dates, masked numbers.
+    """
+    try:
+        given = np.asarray(values)
+        is_complex = given.dtype == object and any(np.iscomplexobj(one) for one in given.flat)
+        real = given.dtype.kind in "fiuOUS" and not is_complex and not np.ma.is_masked(values)
+        require(real, name, must, "it holds something else")
+        with np.errstate(over="ignore"):
+            return np.array(given, dtype=np.float64, order="C")
+    except (TypeError, ValueError, OverflowError) as error:
+        if isinstance(error, ArgumentError):
+            raise
+        raise ArgumentError(name, must, "it holds something else") from None
+
+
 def number_in(name: str, value: object, low: float, high: float, unit: str = "") -> float:
     """Return the value as a float within [low, high].
 
@@ -33,13 +68,13 @@ def number_in(name: str, value: object, low: float, high: float, unit: str = "")
         If the value is not a finite number of that range.
     """
     must = f"be a number from {low:g} to {high:g} {unit}".rstrip()
-    require(not isinstance(value, bool | np.bool_), name, must, f"it is {value}")
     try:
-        number = float(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError, OverflowError):
-        raise ArgumentError(name, must, f"it is {value!r}") from None
-    require(low <= number <= high, name, must, f"it is {number:g}")
-    return number
+        one = reals(name, value, must)  # type: ignore[arg-type]
+    except ArgumentError:
+        raise ArgumentError(name, must, f"it is {shown(value)}") from None
+    require(one.ndim == 0, name, must, f"it is {shown(value)}")
+    require(bool(low <= one <= high), name, must, f"it is {one:g}")
+    return float(one)
 
 
 def whole_number_in(name: str, value: object, low: int, high: int) -> int:
@@ -82,16 +117,24 @@ def grid_in(
         If the grid is empty, not one-dimensional, not numeric, unsorted or out of range.
     """
     must = f"be a number or an increasing list of numbers in {unit}"
-    try:
-        # a copy, contiguous: what the core takes
-        grid = np.array(values, dtype=np.float64, order="C", ndmin=1)
-    except (TypeError, ValueError, OverflowError):
-        raise ArgumentError(name, must, "it holds something else") from None
+    grid = np.atleast_1d(reals(name, values, must))  # contiguous: what the core takes
     require(grid.ndim == 1, name, must, f"it has shape {grid.shape}")
     require(grid.size > 0, name, must, "it is empty")
     require(bool(np.isfinite(grid).all()), name, must, "it holds NaN or infinity")
-    require(bool((np.diff(grid) > 0).all()), name, must, "it is not sorted in increasing order")
+    require(bool((grid[1:] > grid[:-1]).all()), name, must, "it is not sorted in increasing order")
     for value in (grid[0], grid[-1]):
         within = f"lie between {low:.6g} and {high:.6g} {unit}"
         require(low <= value <= high, name, within, f"it reaches {value:.6g}")
     return grid
+
+
+def whether(name: str, value: object) -> bool:
+    """Return a truth value, and refuse what may stand for one."""
+    require(isinstance(value, bool | np.bool_), name, "be True or False", f"it is {shown(value)}")
+    return bool(value)
+
+
+def check_progress(progress: Callable[..., object] | None) -> None:
+    """Raise an ArgumentError unless progress can be reported to this, or to nobody."""
+    usable = progress is None or callable(progress)
+    require(usable, "progress", "be a function", f"it is {shown(progress)}")

@@ -10,6 +10,7 @@ from typing import Annotated, Literal, TypeVar
 
 import numpy as np
 from pydantic import (
+    AfterValidator,
     BaseModel,
     ConfigDict,
     Field,
@@ -24,14 +25,20 @@ from disorder_landscape.model.parameters import (
     ALPHA_RANGE,
     B_MAX,
     BIAS,
+    MOST_SITES,
     MU_MAX,
+    PARAMETER_RANGES,
     SITES,
     TEMPERATURE,
     FloatArray,
     Nanowire,
+    checked_temperature,
 )
 
-Positive = Annotated[int, Field(ge=1)]
+Positive = Annotated[int, Field(ge=1, le=10_000_000)]
+"""Of wires, points, epochs and the like: so many can be counted through."""
+Seed = Annotated[int, Field(ge=0, lt=2**63)]
+"""As netCDF files can hold it."""
 LearningRate = Annotated[float, Field(gt=0, le=1)]
 
 
@@ -60,8 +67,8 @@ class DatasetConfig(_Section):
     """N_dis, the disorder components c₁ … c_n that are kept."""
     alpha_range: tuple[float, float] = ALPHA_RANGE
     """α is uniform in this range in meV nm; two equal numbers fix it, and it is no label then."""
-    sites: Annotated[int, Field(ge=2, le=100_000)] = SITES
-    correlation_length: Annotated[float, Field(gt=0, le=100)] = disorder.CORRELATION_LENGTH
+    sites: Annotated[int, Field(ge=2, le=MOST_SITES)] = SITES
+    correlation_length: Annotated[float, Field(ge=1e-3, le=100)] = disorder.CORRELATION_LENGTH
     """ℓ in sites."""
     amplitude: Literal["sum", "double", "unit-variance"] = "sum"
     """Reading of "1.5 meV", see model.disorder."""
@@ -73,24 +80,27 @@ class DatasetConfig(_Section):
     """The grid of B goes from 0 to this, in T."""
     bias: tuple[float, ...] = BIAS
     """V_bias in meV."""
-    temperature: Annotated[float, Field(ge=0, le=10)] = TEMPERATURE
+    temperature: Annotated[float, AfterValidator(checked_temperature)] = TEMPERATURE
     """In K."""
-    energy_spacing: Annotated[float, Field(gt=0, le=0.1)] | None = None
+    energy_spacing: Annotated[float, Field(ge=1e-7, le=0.1)] | None = None
     """Of a grid of energies to average over, in meV, as the paper does; none averages exactly."""
     wire: WireConfig = WireConfig()
-    seed: Annotated[int, Field(ge=0)] = 0
+    seed: Seed = 0
     shard_size: Positive = 50
     """Realizations per file."""
 
     @model_validator(mode="after")
     def _consistent(self) -> DatasetConfig:
         low, high = self.alpha_range
-        if not 0 <= low <= high:
-            raise ValueError("alpha_range must be two increasing numbers ≥ 0")
+        least, most, _ = PARAMETER_RANGES["alpha"]
+        if not least <= low <= high <= most:
+            raise ValueError(f"alpha_range must be two increasing numbers from 0 to {most:g}")
         if self.components >= self.sites:
             raise ValueError("components must be fewer than sites")
         if list(self.bias) != sorted(set(self.bias)) or not self.bias:
             raise ValueError("bias must be a non-empty increasing list")
+        if not max(map(abs, self.bias)) < Nanowire.delta0:
+            raise ValueError(f"bias must be within the gap of {Nanowire.delta0:g} meV")
         return self
 
     @property
@@ -158,7 +168,7 @@ class TrainingConfig(_Section):
     one network for measurements of all these accuracies."""
     networks: Positive = 1
     """How many are trained, with consecutive seeds; the prediction is their mean."""
-    seed: Annotated[int, Field(ge=0)] = 0
+    seed: Seed = 0
 
     @model_validator(mode="after")
     def _consistent(self) -> TrainingConfig:
@@ -259,5 +269,5 @@ def _read_toml(path: str | Path, name: str) -> dict[str, object]:
     except OSError as error:
         but = f"'{path}' cannot be read ({error.strerror})"
         raise ArgumentError(name, "be a readable TOML file", but) from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except (ValueError, RecursionError) as error:  # also of too many digits, or of nesting
         raise ArgumentError(name, "be a TOML file", f"'{path}' is not: {error}") from None

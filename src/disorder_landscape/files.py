@@ -14,7 +14,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from disorder_landscape.arguments import ArgumentError, require
+from disorder_landscape.arguments import ArgumentError, require, shown
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -91,9 +91,12 @@ def check_writable(name: str, path: Path) -> None:
 
     For results that take long: `replacing` would notice, but only at the end.
     """
-    folder = next(parent for parent in path.absolute().parents if parent.exists())
-    usable = folder.is_dir() and os.access(folder, os.W_OK) and not path.is_dir()
     must = "be a file in a folder that can be written"
+    try:
+        folder = next((one for one in path.absolute().parents if one.exists()), path)
+        usable = folder.is_dir() and os.access(folder, os.W_OK) and not path.is_dir()
+    except OSError as error:  # of a name that is too long
+        raise ArgumentError(name, must, f"it is {shown(str(path))} ({error.strerror})") from None
     require(usable, name, must, f"it is '{path}'")
 
 

@@ -4,20 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from tokenize import TokenError
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from disorder_landscape.arguments import ArgumentError, numbers_of, require
+from disorder_landscape.arguments import ArgumentError, numbers_of, require, whole_number_in
 from disorder_landscape.dataset.store import read_dataset
 from disorder_landscape.files import write_picture
 from disorder_landscape.model.disorder import disorder_realization
-from disorder_landscape.model.parameters import FloatArray, Nanowire, checked_potential
+from disorder_landscape.model.parameters import MOST_SITES, FloatArray, Nanowire, checked_potential
 from disorder_landscape.model.quantities import CONDUCTANCES, with_units
 from disorder_landscape.observables.conductance import Progress, conductance
 from disorder_landscape.observables.visibility import topological_visibility
 from disorder_landscape.parts import needs
+
+NOT_NUMBERS = (ValueError, EOFError, SyntaxError, TokenError, TypeError, OverflowError)
+"""What NumPy raises for files that are damaged or something else."""
 
 
 def read_potential(path: Path, sites: int) -> FloatArray:
@@ -44,7 +48,7 @@ def read_potential(path: Path, sites: int) -> FloatArray:
             V = np.load(path, allow_pickle=False) if path.suffix == ".npy" else _read_text(path)
         except FileNotFoundError:
             raise ArgumentError("potential", must, f"there is no '{path}'") from None
-        except (OSError, ValueError, EOFError) as error:
+        except (OSError, *NOT_NUMBERS) as error:
             reason = str(error).splitlines()[0]
             raise ArgumentError("potential", must, f"'{path}' is not: {reason}") from None
     return checked_potential(V, sites)
@@ -70,7 +74,8 @@ def parse_grid(name: str, text: str) -> FloatArray:
     try:
         if ":" in text:
             start, stop, points = text.split(":")
-            return np.linspace(float(start), float(stop), int(points))
+            with np.errstate(over="ignore", invalid="ignore"):
+                return np.linspace(float(start), float(stop), int(points))
         return np.array([float(part) for part in text.split(",")])
     except ValueError:
         must = "be a number, a list like 0,0.1 or a range like start:stop:points"
@@ -103,7 +108,7 @@ def chosen_wire(
     """
     both = "one of --potential and --seed at most"
     require(potential is None or seed is None, "potential", f"come with {both}", "both are given")
-    require(sites >= 2, "sites", "be 2 or more", f"it is {sites}")
+    sites = whole_number_in("sites", sites, 2, MOST_SITES)
     must = f"be from 0 to {sites - 1}"
     require(0 <= components < sites, "components", must, f"it is {components}")
     if potential is not None:
@@ -162,7 +167,8 @@ def check_plot(path: Path) -> None:
     """Raise an ArgumentError unless the file's ending is one that matplotlib can draw."""
     from matplotlib.backend_bases import FigureCanvasBase
 
-    formats = FigureCanvasBase.get_supported_filetypes()
+    formats = dict(FigureCanvasBase.get_supported_filetypes())
+    formats.pop("pgf", None)  # it needs LaTeX
     must = f"end in one of {', '.join(formats)}"
     require(path.suffix.removeprefix(".") in formats, "plot", must, f"it is '{path}'")
 

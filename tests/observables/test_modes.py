@@ -169,7 +169,7 @@ def test_what_cannot_be_is_one_sentence(change, says):
     ("change", "says"),
     [
         ({"temperature": 2.0}, "leave room between its thermal window and the gap"),
-        ({"temperature": 0.0}, "Argument temperature must"),
+        ({"temperature": 0.0}, "Argument temperature must be above 0"),
         ({"threshold": 2.0}, "Argument threshold must"),
         ({"wire": Nanowire(np.zeros(5), dissipation=0.01)}, "have no dissipation"),
     ],

@@ -6,7 +6,7 @@ import sys
 
 import typer
 
-from disorder_landscape.arguments import ArgumentError
+from disorder_landscape.arguments import ArgumentError, shown
 from disorder_landscape.cli.bench import bench
 from disorder_landscape.cli.evaluate import evaluate
 from disorder_landscape.cli.generate import generate
@@ -51,6 +51,11 @@ def main() -> None:
         app()
     except (ArgumentError, MissingPartError) as error:
         print(f"landscape: {error}", file=sys.stderr)
+        sys.exit(2)
+    except OSError as error:
+        if error.filename is None:
+            raise
+        print(f"landscape: {shown(error.filename)}: {error.strerror}", file=sys.stderr)
         sys.exit(2)
     except MemoryError as error:
         print(f"landscape: there is not enough memory ({error or 'for more'})", file=sys.stderr)

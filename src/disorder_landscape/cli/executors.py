@@ -46,7 +46,7 @@ def executor_of(where: Where, workers: int, scheduler: str | None) -> Executor:
     Raises
     ------
     ArgumentError
-        If the address of the Dask scheduler is missing.
+        If the address of the Dask scheduler is missing, or nobody answers there.
     """
     if where is not Where.DASK:
         return LocalProcesses(workers)
@@ -54,7 +54,9 @@ def executor_of(where: Where, workers: int, scheduler: str | None) -> Executor:
         raise ArgumentError("scheduler", "be given with --executor dask", "it is missing")
     from disorder_landscape.executors.dask_cluster import DaskCluster
 
-    return DaskCluster(scheduler)
+    cluster = DaskCluster(scheduler)
+    cluster.require_answer()  # before anything is made
+    return cluster
 
 
 def on_slurm(

@@ -84,6 +84,8 @@ def infer(
     errors = None if noise is None else parse_noise(noise)
     settings = Settings(model, errors, from_prior, samples, seed, made_here())
     is_file = len(measurements) == 1 and output.suffix and not output.is_dir()
+    fits = len(measurements) == 1 or output.suffix != ".nc"
+    require(fits, "output", "name a folder, for several measurements", f"it is '{output}'")
     if is_file:
         _infer_alone(settings, Task(measurements[0], output, plot))
         return

@@ -32,4 +32,5 @@ def made_here() -> dict[str, str]:
     """Return the provenance of what this command line makes."""
     from disorder_landscape.dataset.store import provenance
 
-    return provenance(" ".join(["landscape", *sys.argv[1:]]))
+    command = " ".join(["landscape", *sys.argv[1:]])
+    return provenance(command.encode("utf-8", "backslashreplace").decode())  # names may be bytes

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import warnings
 from collections.abc import Collection, Hashable, Iterable, Mapping
 from importlib.metadata import version
 from pathlib import Path
@@ -95,11 +96,13 @@ def read_dataset(path: str | Path, variables: Iterable[str] = ()) -> xr.Dataset:
     try:
         with h5py.File(path) as raw:
             dict(raw.attrs)  # h5netcdf fails badly where these are damaged
-        with xr.open_dataset(path, engine="h5netcdf") as file:
-            dataset = file.load()
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of what is odd; what is missing is told below
+            with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as file:
+                dataset = file.load()
     except FileNotFoundError:
         raise ArgumentError("file", must, f"there is no '{path}'") from None
-    except (OSError, ValueError, KeyError, RuntimeError) as error:
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RuntimeError) as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise ArgumentError("file", must, f"'{path}' cannot be read: {reason}") from None
     missing = [name for name in variables if name not in dataset.variables]

@@ -36,6 +36,11 @@ class DaskCluster:
         with self._client() as client:
             return max(1, sum(map(int, client.nthreads().values())))
 
+    def require_answer(self) -> None:
+        """Raise an ArgumentError if no scheduler answers at the address."""
+        with self._client():
+            pass
+
     def each_result(
         self,
         function: Callable[[Task], Result],

@@ -16,7 +16,7 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from disorder_landscape.arguments import ArgumentError
+from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.executors.site import Site
 from disorder_landscape.files import read_json, write_json
 
@@ -158,7 +158,10 @@ def _submitted(folder: Path) -> list[str]:
     path = folder / JOBS
     if not path.exists():
         return []
-    return [str(name) for name in read_json(path, "build", "hold jobs of Slurm").get("jobs", [])]
+    must = "hold jobs of Slurm"
+    jobs = read_json(path, "build", must).get("jobs", [])
+    require(isinstance(jobs, list), "build", must, f"'{path}' holds something else")
+    return [str(name) for name in jobs]
 
 
 def _submit(texts: Sequence[str], folder: Path) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -33,10 +34,10 @@ class Checkpoint:
     """
 
     def __init__(self, path: Path | None = None, fingerprint: bytes = b"") -> None:
-        self.path = path
+        self.path = None if path is None else Path(path)
         self._runs: dict[str, dict[str, Any]] = {}
-        if path is not None and path.exists():
-            self._runs = read_json(path, "checkpoint", _MUST)
+        if self.path is not None and os.path.exists(self.path):
+            self._runs = read_json(self.path, "checkpoint", _MUST)
         self._known = self._runs.setdefault(hashlib.sha256(fingerprint).hexdigest(), {})
 
     def __len__(self) -> int:

@@ -9,7 +9,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from disorder_landscape.arguments import ArgumentError, number_in, require, whole_number_in
+from disorder_landscape.arguments import (
+    ArgumentError,
+    check_progress,
+    number_in,
+    require,
+    whether,
+    whole_number_in,
+)
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.inference.attempt import Attempt, best
 from disorder_landscape.inference.checkpoint import Checkpoint
@@ -30,7 +37,12 @@ from disorder_landscape.inference.problem.observation import (
 from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.search.first_guess import on_grid_of_network
 from disorder_landscape.inference.verdict import verdict
-from disorder_landscape.learning.model import TrainedModel, load_model, load_model_config
+from disorder_landscape.learning.model import (
+    TrainedModel,
+    existing_folder,
+    load_model,
+    load_model_config,
+)
 from disorder_landscape.model.parameters import PARAMETER_RANGES, FloatArray
 from disorder_landscape.model.quantities import AXES, CONDUCTANCES, with_units
 from disorder_landscape.observables.visibility import topological_visibility
@@ -105,16 +117,19 @@ def infer(
         if the noise is negative or another argument is out of range, or if α is not the model's.
     """
     whole_config = (
-        model.config if isinstance(model, TrainedModel) else load_model_config(Path(model))
+        model.config
+        if isinstance(model, TrainedModel)
+        else load_model_config(existing_folder(model))
     )
     config = whole_config.dataset
     observation = observation_of(G, config, noise)
     measurement, errors = observation.measurement, observation.noise
+    check_progress(progress)
     samples = whole_number_in("samples", samples, 2, 10_000)
     require(samples % 2 == 0, "samples", "be an even number", f"it is {samples}")
     seed = whole_number_in("seed", seed, 0, 2**31)
     trained, missing = None, False
-    if network:
+    if whether("network", network):
         missing = not _on_grid_of_network(config, observation).is_measured.all()
     if network and not missing:
         trained = model if isinstance(model, TrainedModel) else load_model(model)

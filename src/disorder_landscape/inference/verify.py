@@ -19,7 +19,15 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from disorder_landscape.arguments import grid_in, require, whole_number_in
+from disorder_landscape.arguments import (
+    ArgumentError,
+    check_progress,
+    grid_in,
+    number_in,
+    require,
+    shown,
+    whole_number_in,
+)
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.inference.problem.measurement import Measurement, measurement_of, simulated
 from disorder_landscape.inference.problem.observation import (
@@ -35,7 +43,7 @@ from disorder_landscape.inference.verification.comparison import (
 from disorder_landscape.inference.verification.mismatch import SHIFTS, mean_squares, simulations
 from disorder_landscape.inference.verification.predictive import predictive_p
 from disorder_landscape.model.disorder import disorder_realization
-from disorder_landscape.model.parameters import FloatArray, Nanowire
+from disorder_landscape.model.parameters import PARAMETER_RANGES, FloatArray, Nanowire
 from disorder_landscape.observables.conductance import Progress
 
 CONTROLS = 50
@@ -96,8 +104,15 @@ def verify(
         holds NaN, if an older version of `infer` made the prediction, if the settings cannot be
         simulated, or another argument is out of range.
     """
-    given = [measurements] if isinstance(measurements, xr.Dataset) else list(measurements)
-    require(bool(given), "measurement", "be one Dataset or more", "there is none")
+    check_progress(progress)
+    must = "be one Dataset or more"
+    try:
+        given = [measurements] if isinstance(measurements, xr.Dataset) else list(measurements)
+    except TypeError:
+        raise ArgumentError("measurement", must, f"it is {shown(measurements)}") from None
+    require(bool(given), "measurement", must, "there is none")
+    known = config is None or isinstance(config, DatasetConfig)
+    require(known, "config", "be a DatasetConfig", f"it is {shown(config)}")
     measured = [measurement_of(dataset) for dataset in given]
     stated = [stated_noise(dataset.attrs, 0.0) if noise is None else noise for dataset in given]
     errors = np.array([noise_of_channels(one) for one in stated])
@@ -180,7 +195,9 @@ def _predicted_wire(prediction: xr.Dataset) -> Nanowire:
         found = prediction[name].dims
         require(found == dims, "prediction", must, f"the dims of {name} are {found}")
     V, alpha = (prediction[name] for name in names)
-    return Nanowire(V.to_numpy(), alpha=float(alpha))
+    return Nanowire(
+        V.to_numpy(), alpha=number_in("alpha", alpha.to_numpy(), *PARAMETER_RANGES["alpha"])
+    )
 
 
 def _disorder_model(
@@ -191,6 +208,8 @@ def _disorder_model(
         components = prediction.sizes.get("component", 0)
         must = "hold the components, which define the disorder model"
         require(components > 0, "prediction", must, "it lacks them")
+        but = f"it has {components}, and {predicted.sites} sites"
+        require(components < predicted.sites, "prediction", "have fewer components than sites", but)
         return DatasetConfig(realizations=1, sites=predicted.sites, components=components)
     must = "come from the model that is given"
     made_by = prediction.attrs.get("config_hash", config.hash)

@@ -7,6 +7,7 @@ finished training), curves.csv with curves.pdf and curves.png.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -18,7 +19,7 @@ import xarray as xr
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
-from disorder_landscape.arguments import ArgumentError, require
+from disorder_landscape.arguments import ArgumentError, require, shown
 from disorder_landscape.config import Config, DatasetConfig
 from disorder_landscape.files import read_json, replacing, write_json
 from disorder_landscape.learning.backend import import_keras
@@ -123,10 +124,28 @@ def on_grid_of(config: DatasetConfig, G: xr.Dataset, name: str = "G") -> xr.Data
     ArgumentError
         As `points_of_grid`.
     """
-    axes = {axis: G[axis].to_numpy() for axis in AXES if axis in G.coords and G[axis].ndim == 1}
+    require(isinstance(G, xr.Dataset), name, "be a Dataset", f"it is {type(G).__name__!r}")
+    axes = {
+        axis: G[axis].to_numpy()
+        for axis in AXES
+        if axis in G.coords and G[axis].dims == (axis,) and G[axis].dtype.kind in "fiu"
+    }
     points = dict(zip(AXES, points_of_grid(config, axes, name), strict=True))
     same = all(np.array_equal(points[axis], np.arange(G.sizes[axis])) for axis in AXES)
     return G if same else G.isel(points)
+
+
+def existing_folder(folder: str | Path) -> Path:
+    """Return the folder of a model.
+
+    Raises
+    ------
+    ArgumentError
+        If it is none.
+    """
+    is_folder = isinstance(folder, str | Path) and os.path.isdir(folder)
+    require(is_folder, "model", _MODEL, f"there is no folder {shown(str(folder))}")
+    return Path(folder)
 
 
 def load_model(folder: str | Path) -> TrainedModel:
@@ -137,8 +156,7 @@ def load_model(folder: str | Path) -> TrainedModel:
     ArgumentError
         If the folder is not one of a finished training, or a file in it is damaged.
     """
-    folder = Path(folder)
-    require(folder.is_dir(), "model", _MODEL, f"there is no folder '{folder}'")
+    folder = existing_folder(folder)
     finished = (folder / METRICS).exists()
     require(finished, "model", _MODEL, f"the training in '{folder}' is not finished")
     config = load_model_config(folder)

@@ -10,7 +10,7 @@ import xarray as xr
 from disorder_landscape.learning.model import TrainedModel, load_model, on_grid_of
 from disorder_landscape.learning.scaling import conductance_array
 from disorder_landscape.model.disorder import potential_from_components
-from disorder_landscape.model.quantities import with_units
+from disorder_landscape.model.quantities import CONDUCTANCES, with_units
 
 
 def predict(model: str | Path | TrainedModel, G: xr.Dataset) -> xr.Dataset:
@@ -56,7 +56,7 @@ def predict(model: str | Path | TrainedModel, G: xr.Dataset) -> xr.Dataset:
         "site": np.arange(dataset.sites),
     }
     predicted = with_units(xr.Dataset(data, coords=coords, attrs={"config_hash": dataset.hash}))
-    if "realization" not in G.dims:
+    if all("realization" not in G[name].dims for name in CONDUCTANCES):
         return predicted.isel(realization=0)
     if "realization" in G.coords:
         predicted = predicted.assign_coords(realization=G["realization"])

@@ -64,8 +64,13 @@ def conductance_array(G: xr.Dataset) -> ConductanceArray:
         dims = set(G[name].dims)
         must = "have the dimensions mu, B, bias and at most realization"
         require(dims - {"realization"} == set(AXES), "G", must, f"{name} has {G[name].dims}")
+        require(G[name].dtype.kind in "fiu", "G", "hold numbers", f"{name} holds something else")
         G_ab = G[name] if "realization" in dims else G[name].expand_dims("realization")
-        channels.append(G_ab.transpose("realization", *AXES).to_numpy().astype(np.float32))
+        with np.errstate(over="ignore"):
+            channels.append(G_ab.transpose("realization", *AXES).to_numpy().astype(np.float32))
+    same = len({channel.shape for channel in channels}) == 1 and channels[0].size > 0
+    must = "hold the same realizations of each conductance, at least one"
+    require(same, "G", must, f"their shapes are {', '.join(str(one.shape) for one in channels)}")
     X = np.stack(channels, axis=-1)
     require(bool(np.isfinite(X).all()), "G", "be finite", "it holds NaN or infinity")
     return X

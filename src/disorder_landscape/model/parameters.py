@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.constants import e, hbar, m_e, physical_constants
 
-from disorder_landscape.arguments import ArgumentError, number_in, require
+from disorder_landscape.arguments import number_in, reals, require, shown
 
 FloatArray = NDArray[np.float64]
 
@@ -22,6 +22,8 @@ BOHR_MAGNETON: float = 1e3 * physical_constants["Bohr magneton in eV/T"][0]
 BOLTZMANN: float = 1e3 * physical_constants["Boltzmann constant in eV/K"][0]
 """k_B in meV/K."""
 
+MOST_SITES = 100_000
+"""Most sites of a wire that a command or a configuration makes."""
 SITES = 300
 """Sites of the paper's 3 µm wire at a = 10 nm (S-I)."""
 ALPHA = 8.0
@@ -98,8 +100,9 @@ class Nanowire:
             if not (value is None and name in ("lead_alpha", "lead_g")):
                 checked[name] = number_in(name, value, low, high, unit)
         must = "be two numbers in meV, left and right"
-        require(np.shape(self.barrier) == (2,), "barrier", must, f"it is {self.barrier!r}")
-        checked["barrier"] = tuple(number_in("barrier", b, *BARRIER_RANGE) for b in self.barrier)
+        barrier = reals("barrier", self.barrier, must)
+        require(barrier.shape == (2,), "barrier", must, f"it is {shown(self.barrier)}")
+        checked["barrier"] = tuple(number_in("barrier", b, *BARRIER_RANGE) for b in barrier)
         for name, value in checked.items():
             object.__setattr__(self, name, value)
 
@@ -161,8 +164,24 @@ PARAMETER_RANGES = {
     "dissipation": (0.0, 10.0, "meV"),
 }
 """Range and unit within which each parameter of a wire is accepted that is one number."""
+COLDEST, HOTTEST = 1e-6, 10.0
+"""Range of temperatures above zero in K."""
 BARRIER_RANGE = (-1e3, 1e3, "meV")
 """The same of the barriers."""
+
+
+def checked_temperature(temperature: object) -> float:
+    """Return a temperature in K: zero, or one at which kT is not lost in rounding.
+
+    Raises
+    ------
+    ArgumentError
+        If it is another number, or none.
+    """
+    T = number_in("temperature", temperature, 0.0, HOTTEST, "K")
+    must = f"be 0 or from {COLDEST:g} to {HOTTEST:g} K"
+    require(T == 0 or T >= COLDEST, "temperature", must, f"it is {T:g}")
+    return T
 
 
 def checked_potential(potential: ArrayLike, sites: int | None = None) -> FloatArray:
@@ -174,10 +193,7 @@ def checked_potential(potential: ArrayLike, sites: int | None = None) -> FloatAr
         If it is not a finite vector of at least two sites, or not of the given number of sites.
     """
     must = "be a vector of one number in meV per site, at least two"
-    try:
-        V = np.array(potential, dtype=np.float64)
-    except (TypeError, ValueError, OverflowError):
-        raise ArgumentError("potential", must, "it holds something else") from None
+    V = reals("potential", potential, must)
     require(V.ndim == 1 and V.size >= 2, "potential", must, f"it has shape {V.shape}")
     require(sites in (None, V.size), "potential", f"have {sites} sites", f"it has {V.size}")
     require(bool(np.isfinite(V).all()), "potential", "be finite", "it holds NaN or infinity")

@@ -10,9 +10,15 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from disorder_landscape.arguments import grid_in, number_in
+from disorder_landscape.arguments import check_progress, grid_in, number_in
 from disorder_landscape.model.hamiltonian import FULL_TURN
-from disorder_landscape.model.parameters import BOLTZMANN, TEMPERATURE, FloatArray, Nanowire
+from disorder_landscape.model.parameters import (
+    BOLTZMANN,
+    TEMPERATURE,
+    FloatArray,
+    Nanowire,
+    checked_temperature,
+)
 from disorder_landscape.model.quantities import CONDUCTANCES, with_units
 from disorder_landscape.solver import routes
 from disorder_landscape.solver.energy_grid import ENERGY_SPACING, thermal_grid
@@ -39,7 +45,7 @@ def conductance(
     mu, B, bias : float or array
         Chemical potentials in meV, fields in T, biases in meV; increasing.
     temperature : float
-        In K; 0 gives the bare conductance at ω = bias.
+        In K, 0 or from 1e-6 to 10; 0 gives the bare conductance at ω = bias.
     solver : {"fast", "kwant"}
         The real recursion, or Kwant, the reference, thousands of times slower.
     energy_spacing : float, optional
@@ -66,13 +72,14 @@ def conductance(
         thermal window beyond the gap, the solver unknown, or the wires of unequal length.
     """
     wires, solver = routes.wires_of(wire), routes.known_solver(solver)
+    check_progress(progress)
     delta0 = min(w.delta0 for w in wires)
     grids = {
         "mu": grid_in("mu", mu, -1e3, 1e3, "meV"),
         "B": grid_in("B", B, -100.0, 100.0, "T"),
         "bias": grid_in("bias", bias, -delta0 * (1 - 1e-6), delta0 * (1 - 1e-6), "meV"),
     }
-    temperature = number_in("temperature", temperature, 0.0, 10.0, "K")
+    temperature = checked_temperature(temperature)
     theta = number_in("theta", theta, -FULL_TURN, FULL_TURN, "radians")
     shape = (len(wires), grids["mu"].size, grids["B"].size)
     report = progress if progress is not None else lambda done, total: None

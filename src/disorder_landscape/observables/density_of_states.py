@@ -12,9 +12,9 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.linalg import solve_banded
 
-from disorder_landscape.arguments import grid_in, number_in, require
+from disorder_landscape.arguments import grid_in, number_in, require, shown
 from disorder_landscape.model.hamiltonian import FULL_TURN, ComplexArray, banded, hopping, onsite
-from disorder_landscape.model.parameters import BOLTZMANN, FloatArray, Nanowire
+from disorder_landscape.model.parameters import BOLTZMANN, FloatArray, Nanowire, checked_temperature
 from disorder_landscape.model.quantities import with_units
 from disorder_landscape.solver import compiled
 from disorder_landscape.solver.compiled import GROWTH_LIMIT
@@ -67,13 +67,13 @@ def local_density_of_states(
     ArgumentError
         If the wire is not one, a grid is empty, unsorted or out of range, or the temperature is.
     """
-    require(isinstance(wire, Nanowire), "wire", "be a Nanowire", f"it is {wire!r}")
+    require(isinstance(wire, Nanowire), "wire", "be a Nanowire", f"it is {shown(wire)}")
     grids = {
         "mu": grid_in("mu", mu, -1e3, 1e3, "meV"),
         "B": grid_in("B", B, -100.0, 100.0, "T"),
         "energy": grid_in("energy", energy, -LIMIT, LIMIT, "meV"),
     }
-    temperature = number_in("temperature", temperature, 0.0, 10.0, "K")
+    temperature = checked_temperature(temperature)
     theta = number_in("theta", theta, -FULL_TURN, FULL_TURN, "radians")
     if temperature > 0:
         z, weights = _line(grids["energy"], BOLTZMANN * temperature)

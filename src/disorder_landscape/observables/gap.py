@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from disorder_landscape.arguments import grid_in, number_in, require
 from disorder_landscape.model.hamiltonian import FULL_TURN
-from disorder_landscape.model.parameters import BOLTZMANN, FloatArray, Nanowire
+from disorder_landscape.model.parameters import BOLTZMANN, FloatArray, Nanowire, checked_temperature
 from disorder_landscape.model.quantities import with_units
 from disorder_landscape.observables.conductance import conductance
 from disorder_landscape.observables.visibility import topological_visibility
@@ -71,11 +71,11 @@ def gap(
     grids = {"mu": grid_in("mu", mu, -1e3, 1e3, "meV"), "B": grid_in("B", B, -100.0, 100.0, "T")}
     theta = number_in("theta", theta, -FULL_TURN, FULL_TURN, "radians")
     threshold = number_in("threshold", threshold, 0.0, 1.0)
-    temperature = number_in("temperature", temperature, 1e-6, 10.0, "K")
+    temperature = checked_temperature(temperature)
     edge = min(w.delta0 for w in wires) * routes.BELOW_GAP
     window = edge - compiled.core.REACH * BOLTZMANN * temperature
-    must = "leave room between its thermal window and the gap"
-    require(window > 0, "temperature", must, f"it is {temperature:g} K")
+    must = "be above 0, and leave room between its thermal window and the gap"
+    require(0 < window < edge, "temperature", must, f"it is {temperature:g} K")
     levels = compiled.levels(wires, grids["mu"], grids["B"], 2, theta)
     bare = [replace(w, barrier=(0.0, 0.0)) for w in wires]
     topological = (

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from disorder_landscape.arguments import grid_in, require
+from disorder_landscape.arguments import grid_in, number_in, require, shown
 from disorder_landscape.model.parameters import Nanowire
 from disorder_landscape.model.quantities import CONDUCTANCES, QUANTITIES, with_units
 from disorder_landscape.solver import compiled
@@ -52,8 +52,9 @@ def conductance_gradient(
     ArgumentError
         If the wire is not one or has dissipation, or a grid is empty, unsorted or out of range.
     """
-    require(isinstance(wire, Nanowire), "wire", "be a Nanowire", f"it is {wire!r}")
+    require(isinstance(wire, Nanowire), "wire", "be a Nanowire", f"it is {shown(wire)}")
     require(wire.dissipation == 0, "wire", "have no dissipation for slopes", "it has")
+    growth_limit = number_in("growth_limit", growth_limit, 0.0, np.inf)
     edge = wire.delta0 * (1 - 1e-6)
     grids = {
         "mu": grid_in("mu", mu, -1e3, 1e3, "meV"),

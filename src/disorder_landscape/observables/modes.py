@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 from scipy.linalg import schur, solve_banded
 
-from disorder_landscape.arguments import number_in, require, whole_number_in
+from disorder_landscape.arguments import number_in, require, shown, whole_number_in
 from disorder_landscape.model.hamiltonian import (
     FULL_TURN,
     PARTICLE_HOLE,
@@ -69,7 +69,7 @@ def modes(wire: Nanowire, mu: float, B: float, count: int = 1, theta: float = 0.
         If the wire is not one or has dissipation, a number is out of range, or there are fewer
         levels below the gap.
     """
-    require(isinstance(wire, Nanowire), "wire", "be a Nanowire", f"it is {wire!r}")
+    require(isinstance(wire, Nanowire), "wire", "be a Nanowire", f"it is {shown(wire)}")
     require(wire.dissipation == 0, "wire", "have no dissipation for its levels", "it has")
     mu, B = number_in("mu", mu, -1e3, 1e3, "meV"), number_in("B", B, -100.0, 100.0, "T")
     theta = number_in("theta", theta, -FULL_TURN, FULL_TURN, "radians")

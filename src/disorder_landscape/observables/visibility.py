@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from disorder_landscape.arguments import grid_in, number_in, require
+from disorder_landscape.arguments import grid_in, number_in, require, whether
 from disorder_landscape.model.hamiltonian import FULL_TURN
 from disorder_landscape.model.parameters import FloatArray, Nanowire
 from disorder_landscape.model.quantities import with_units
@@ -54,7 +54,7 @@ def topological_visibility(
     without = all(w.dissipation == 0 for w in wires)
     must = "have no dissipation for T_IV"
     require(without, "wire", must, "it has, and nothing is reflected in full")
-    if not barrier:
+    if not whether("barrier", barrier):
         wires = [replace(w, barrier=(0.0, 0.0)) for w in wires]
     theta = number_in("theta", theta, -FULL_TURN, FULL_TURN, "radians")
     determinant = routes.reflection_determinant(wires, grids["mu"], grids["B"], theta, solver)

@@ -7,12 +7,12 @@ where they can be, or sums over a grid of energies, as the paper's.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from disorder_landscape.arguments import ArgumentError, require
+from disorder_landscape.arguments import ArgumentError, require, shown
 from disorder_landscape.model.parameters import BOLTZMANN, FloatArray, Nanowire
 from disorder_landscape.solver import compiled
 from disorder_landscape.solver.quadrature import ThermalConductance, thermal_quadrature
@@ -29,8 +29,10 @@ BLOCK_SETS = {"fast": 2**12, "tilted": 2**5}
 def wires_of(wire: Nanowire | Sequence[Nanowire]) -> list[Nanowire]:
     """Return a list of wires of equal length, of one wire or of several."""
     must = "be a Nanowire or a sequence of them of equal length"
-    require(isinstance(wire, Nanowire | Iterable), "wire", must, f"it is {wire!r}")
-    wires = [wire] if isinstance(wire, Nanowire) else list(wire)
+    try:
+        wires = [wire] if isinstance(wire, Nanowire) else list(wire)
+    except TypeError:
+        raise ArgumentError("wire", must, f"it is {shown(wire)}") from None
     ok = bool(wires) and all(isinstance(w, Nanowire) for w in wires)
     require(ok, "wire", must, f"it is {type(wire).__name__!r} of {len(wires)}")
     lengths = sorted({w.sites for w in wires})
@@ -40,8 +42,8 @@ def wires_of(wire: Nanowire | Sequence[Nanowire]) -> list[Nanowire]:
 
 def known_solver(name: str) -> str:
     """Return the name if it is one of SOLVERS."""
-    if name not in SOLVERS:
-        raise ArgumentError("solver", "be 'fast' or 'kwant'", f"it is {name!r}")
+    known = isinstance(name, str) and name in SOLVERS
+    require(known, "solver", "be 'fast' or 'kwant'", f"it is {shown(name)}")
     return name
 
 

@@ -10,10 +10,15 @@ import numpy as np
 import xarray as xr
 from scipy.constants import e, h
 
-from disorder_landscape.arguments import ArgumentError, grid_in, number_in, require
+from disorder_landscape.arguments import grid_in, number_in, require
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.model.hamiltonian import FULL_TURN
-from disorder_landscape.model.parameters import PARAMETER_RANGES, FloatArray, Nanowire
+from disorder_landscape.model.parameters import (
+    PARAMETER_RANGES,
+    FloatArray,
+    Nanowire,
+    checked_temperature,
+)
 from disorder_landscape.model.quantities import AXES, CONDUCTANCES
 from disorder_landscape.observables.conductance import conductance
 
@@ -103,14 +108,19 @@ def measurement_of(
     if not complete and given:
         missing = [name for name in missing if name in AXES]
     require(not missing, "measurement", must, f"it lacks {', '.join(missing)}")
-    dims = sorted({str(dim) for name in given for dim in dataset[name].dims})
-    require(dims == ["B", "bias", "mu"], "measurement", must, f"its dims are {', '.join(dims)}")
+    for name in given:
+        dims = sorted(map(str, dataset[name].dims))
+        but = f"the dims of {name} are {', '.join(dims)}"
+        require(dims == ["B", "bias", "mu"], "measurement", must, but)
     settings = {**(usual or {}), **dataset.attrs}
     missing = [name for name in SETTINGS if name not in settings]
     states = f"state {', '.join(SETTINGS)} as attributes"
     require(not missing, "measurement", states, f"it lacks {', '.join(missing)}")
     _check_wire(dataset.attrs)
-    dataset = dataset.sortby([axis for axis in AXES if dataset[axis].dims == (axis,)])
+    for axis in AXES:
+        is_axis = dataset[axis].dims == (axis,) and dataset[axis].dtype.kind in "fiu"
+        require(is_axis, axis, "be numbers along their own dimension", "it is something else")
+    dataset = dataset.sortby(list(AXES))
     return Measurement(
         G=_checked_conductances(dataset, given, complete),
         mu=_axis(dataset, "mu", 1e3),
@@ -118,7 +128,7 @@ def measurement_of(
         bias=_axis(dataset, "bias", 1e3),
         theta=number_in("theta", settings["theta"], -FULL_TURN, FULL_TURN, "radians"),
         barrier=_two_barriers(settings["barrier"]),
-        temperature=number_in("temperature", settings["temperature"], 0.0, 10.0, "K"),
+        temperature=checked_temperature(settings["temperature"]),
     )
 
 
@@ -161,9 +171,4 @@ def _axis(dataset: xr.Dataset, name: str, largest: float) -> FloatArray:
 
 
 def _two_barriers(stated: object) -> tuple[float, float]:
-    try:
-        left, right = (float(value) for value in np.asarray(stated, dtype=np.float64))
-    except (TypeError, ValueError):
-        must = "state two barriers in meV, left and right"
-        raise ArgumentError("measurement", must, f"it states {stated!r}") from None
-    return Nanowire(np.zeros(2), barrier=(left, right)).barrier
+    return Nanowire(np.zeros(2), barrier=stated).barrier  # type: ignore[arg-type]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from disorder_landscape.arguments import number_in, require
+from disorder_landscape.arguments import number_in, reals, require
 from disorder_landscape.inference.problem.measurement import Measurement, simulated
 from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.model.parameters import NOISE_FLOOR, FloatArray
@@ -128,8 +128,8 @@ def objective(observation: Observation, X: FloatArray, Y: FloatArray) -> FloatAr
 
 def stated_noise(attrs: Mapping[Any, Any], usual: float = NOISE_FLOOR) -> float | dict[str, float]:
     """Return the noise that a measurement states: one number, one of each channel, or the usual."""
-    noise = np.atleast_1d(attrs.get("noise", usual)).tolist()
     must = f"be one number in e²/h, or one for each of {', '.join(CONDUCTANCES)}"
+    noise = np.atleast_1d(reals("noise", attrs.get("noise", usual), must)).tolist()
     one_or_all = len(noise) in (1, len(CONDUCTANCES))
     require(one_or_all, "noise", must, f"the measurement states {len(noise)}")
     return one_or_each(noise)
@@ -151,5 +151,6 @@ def noise_of_channels(noise: float | Mapping[str, float]) -> FloatArray:
     if not isinstance(noise, Mapping):
         return np.full(len(CONDUCTANCES), number_in("noise", noise, 0.0, 1.0, "e²/h"))
     must = f"be one number, or one for each of {', '.join(CONDUCTANCES)}"
-    require(set(noise) == set(CONDUCTANCES), "noise", must, f"it is for {', '.join(noise)}")
+    but = f"it is for {', '.join(map(str, noise))}"
+    require(set(noise) == set(CONDUCTANCES), "noise", must, but)
     return np.array([number_in("noise", noise[name], 0.0, 1.0, "e²/h") for name in CONDUCTANCES])
