@@ -13,6 +13,7 @@ from disorder_landscape.model.quantities import with_units
 from disorder_landscape.observables.density_of_states import local_density_of_states
 from disorder_landscape.observables.modes import modes
 from disorder_landscape.parts import needs
+from disorder_landscape.simulation import stated
 
 
 def look_inside(
@@ -45,9 +46,8 @@ def look_inside(
     for name, variable in density.isel(mu=0, B=0, drop=True).data_vars.items():
         result[name] = variable
     result["potential"] = ("site", wire.potential)
-    parameters = ("alpha", "mass", "lattice", "g", "gamma", "delta0", "barrier", "lead_mu")
-    attrs = {name: getattr(wire, name) for name in parameters}
-    return with_units(result.assign_attrs(**found.attrs, temperature=temperature, **attrs))
+    attrs = {**found.attrs, **stated(wire), "temperature": temperature}
+    return with_units(result.assign_attrs(attrs))
 
 
 def _in_parts(variable: xr.DataArray) -> xr.DataArray:

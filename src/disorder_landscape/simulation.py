@@ -157,9 +157,13 @@ def simulate_wire(
         wire, grids["mu"], grids["B"], solver=solver, theta=theta
     )
     result["potential"] = ("site", wire.potential)
-    for name in ("alpha", "mass", "lattice", "g", "gamma", "delta0", "barrier", "lead_mu"):
-        result.attrs[name] = getattr(wire, name)
-    return with_units(result)
+    return with_units(result.assign_attrs(stated(wire)))
+
+
+def stated(wire: Nanowire) -> dict[str, Any]:
+    """Return the parameters that a file states of the wire in it."""
+    names = ("alpha", "mass", "lattice", "g", "gamma", "delta0", "critical_field")
+    return {name: getattr(wire, name) for name in (*names, "barrier", "lead_mu")}
 
 
 @needs("figures")

@@ -15,6 +15,7 @@ from disorder_landscape.cli.wire_options import (
     Angle,
     Barrier,
     Components,
+    CriticalField,
     Delta0,
     Gamma,
     LandeG,
@@ -34,6 +35,7 @@ def modes(
     g: LandeG = Nanowire.g,
     gamma: Gamma = Nanowire.gamma,
     delta0: Delta0 = Nanowire.delta0,
+    critical_field: CriticalField = Nanowire.critical_field,
     barrier: Barrier = "15",
     mu: Annotated[float, typer.Option(help="Chemical potential in meV.")] = 0.0,
     B: Annotated[float, typer.Option("--B", help="Magnetic field in T.")] = 0.6,
@@ -71,6 +73,7 @@ def modes(
         g=g,
         gamma=gamma,
         delta0=delta0,
+        critical_field=critical_field,
         barrier=simulation.parse_barrier(barrier),
     )
     angle = math.radians(number_in("theta", theta, -360.0, 360.0, "degrees"))

@@ -15,6 +15,7 @@ from disorder_landscape.cli.wire_options import (
     Angle,
     Barrier,
     Components,
+    CriticalField,
     Delta0,
     Gamma,
     LandeG,
@@ -34,6 +35,7 @@ def simulate(
     g: LandeG = Nanowire.g,
     gamma: Gamma = Nanowire.gamma,
     delta0: Delta0 = Nanowire.delta0,
+    critical_field: CriticalField = Nanowire.critical_field,
     barrier: Barrier = "15",
     temperature: Annotated[float, typer.Option(help="In K; 0 is the bare conductance.")] = 0.05,
     mu: Annotated[str, typer.Option(help="Chemical potentials in meV.")] = "0",
@@ -70,6 +72,7 @@ def simulate(
         g=g,
         gamma=gamma,
         delta0=delta0,
+        critical_field=critical_field,
         barrier=simulation.parse_barrier(barrier),
     )
     angle = math.radians(number_in("theta", theta, -360.0, 360.0, "degrees"))

@@ -21,6 +21,9 @@ Alpha = Annotated[float, typer.Option(help="Spin-orbit coupling in meV nm.")]
 LandeG = Annotated[float, typer.Option("--g", help="Lande g-factor.")]
 Gamma = Annotated[float, typer.Option(help="Coupling to the superconductor in meV.")]
 Delta0 = Annotated[float, typer.Option(help="Gap of the superconductor in meV.")]
+CriticalField = Annotated[
+    float, typer.Option(help="Field in T at which this gap closes, as sqrt(1 - (B/Bc)^2).")
+]
 Barrier = Annotated[
     str, typer.Option(help="Barrier on the end sites in meV: one number, or left,right.")
 ]

@@ -5,7 +5,7 @@ Energies are in meV, lengths in nm, fields in T, temperatures in K, conductances
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -70,6 +70,9 @@ class Nanowire:
         Spin–orbit coupling of the leads in meV nm; None takes the wire's.
     lead_g : float or None
         Landé g-factor of the leads; None takes the wire's.
+    critical_field : float
+        B_c in T: the parent's gap in a field is Δ₀√(1 − (B/B_c)²), as that of an aluminium shell
+        is. The paper's does not depend on the field.
     dissipation : float
         Γ ≥ 0 in meV: −iΓ on each site broadens the levels, as if each leaked into a bath that
         takes no part in transport. The paper's wires have none.
@@ -91,6 +94,7 @@ class Nanowire:
     lead_mu: float = 25.0
     lead_alpha: float | None = None
     lead_g: float | None = None
+    critical_field: float = np.inf
     dissipation: float = 0.0
 
     def __post_init__(self) -> None:
@@ -105,6 +109,21 @@ class Nanowire:
         checked["barrier"] = tuple(number_in("barrier", b, *BARRIER_RANGE) for b in barrier)
         for name, value in checked.items():
             object.__setattr__(self, name, value)
+
+    def in_field(self, B: float) -> Nanowire:
+        """Return the wire with the gap that its parent has in a field, in T.
+
+        Raises
+        ------
+        ArgumentError
+            If there is none left.
+        """
+        if np.isinf(self.critical_field):
+            return self
+        left = self.delta0 * np.sqrt(max(0.0, 1 - (B / self.critical_field) ** 2))
+        must = f"stay below the critical field of {self.critical_field:g} T, where the gap closes"
+        require(left >= PARAMETER_RANGES["delta0"][0], "B", must, f"it reaches {B:g} T")
+        return replace(self, delta0=left, critical_field=np.inf)
 
     @property
     def sites(self) -> int:
@@ -161,6 +180,7 @@ PARAMETER_RANGES = {
     "lead_mu": (-1e3, 1e3, "meV"),
     "lead_alpha": (0.0, 100.0, "meV nm"),
     "lead_g": (0.0, 100.0, ""),
+    "critical_field": (1e-3, np.inf, "T"),
     "dissipation": (0.0, 10.0, "meV"),
 }
 """Range and unit within which each parameter of a wire is accepted that is one number."""

@@ -73,10 +73,11 @@ def conductance(
     """
     wires, solver = routes.wires_of(wire), routes.known_solver(solver)
     check_progress(progress)
-    delta0 = min(w.delta0 for w in wires)
+    fields = grid_in("B", B, -100.0, 100.0, "T")
+    delta0 = min(w.in_field(abs(fields).max()).delta0 for w in wires)
     grids = {
         "mu": grid_in("mu", mu, -1e3, 1e3, "meV"),
-        "B": grid_in("B", B, -100.0, 100.0, "T"),
+        "B": fields,
         "bias": grid_in("bias", bias, -delta0 * (1 - 1e-6), delta0 * (1 - 1e-6), "meV"),
     }
     temperature = checked_temperature(temperature)
@@ -87,12 +88,12 @@ def conductance(
     G = np.empty((*shape, grids["bias"].size, 4))
     error, energies = np.zeros(shape), np.zeros(shape, dtype=np.int64)
     if exact:
-        for some, points, fields in _blocks(shape, routes.sets_at_once(theta)):
-            at = some, points, fields
+        for some, points, some_fields in _blocks(shape, routes.sets_at_once(theta)):
+            at = some, points, some_fields
             G[at], error[at], energies[at] = routes.thermal_average(
                 wires[some],
                 grids["mu"][points],
-                grids["B"][fields],
+                fields[some_fields],
                 grids["bias"],
                 temperature,
                 theta,
@@ -107,10 +108,10 @@ def conductance(
         else:
             omega, weights = _bare_grid(grids["bias"])
         most = routes.energies_at_once(solver, theta) // omega.size
-        for some, points, fields in _blocks(shape, most):
-            some_wires, mus, fs = wires[some], grids["mu"][points], grids["B"][fields]
+        for some, points, some_fields in _blocks(shape, most):
+            some_wires, mus, fs = wires[some], grids["mu"][points], fields[some_fields]
             G0 = routes.bare_conductance(some_wires, mus, fs, omega, theta, solver)
-            G[some, points, fields] = np.einsum("wmbkse,vks->wmbve", G0, weights)
+            G[some, points, some_fields] = np.einsum("wmbkse,vks->wmbve", G0, weights)
             report(G0[..., 0, 0, 0].size, error.size)
     missing = np.isnan(G).any(axis=(3, 4)).sum()
     if missing:

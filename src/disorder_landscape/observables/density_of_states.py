@@ -75,17 +75,18 @@ def local_density_of_states(
     }
     temperature = checked_temperature(temperature)
     theta = number_in("theta", theta, -FULL_TURN, FULL_TURN, "radians")
-    if temperature > 0:
-        z, weights = _line(grids["energy"], BOLTZMANN * temperature)
-    else:
-        z, weights = _off_the_edge(grids["energy"], wire.delta0).astype(complex), None
     density = np.empty((*(grid.size for grid in grids.values()), wire.sites, 2))
-    at_once = max(1, SIZE // (z.size * wire.sites))
-    for f, field in enumerate(grids["B"]):
-        sigma = _leads(wire, float(field), z, theta)
+    for f, field in enumerate(grids["B"].tolist()):
+        there = wire.in_field(field)
+        if temperature > 0:
+            z, weights = _line(grids["energy"], BOLTZMANN * temperature)
+        else:
+            z, weights = _off_the_edge(grids["energy"], there.delta0).astype(complex), None
+        sigma = _leads(there, field, z, theta)
+        at_once = max(1, SIZE // (z.size * wire.sites))
         for first in range(0, grids["mu"].size, at_once):
             some = slice(first, first + at_once)
-            G = _green(wire, grids["mu"][some], float(field), z, sigma, theta)
+            G = _green(there, grids["mu"][some], field, z, sigma, theta)
             averaged = G if weights is None else np.moveaxis(np.tensordot(weights, G, (1, 1)), 1, 0)
             density[some, f] = -averaged.imag / np.pi
     dims = (*grids, "site")

@@ -72,11 +72,12 @@ def gap(
     theta = number_in("theta", theta, -FULL_TURN, FULL_TURN, "radians")
     threshold = number_in("threshold", threshold, 0.0, 1.0)
     temperature = checked_temperature(temperature)
-    edge = min(w.delta0 for w in wires) * routes.BELOW_GAP
+    highest = abs(grids["B"]).max()
+    edge = min(w.in_field(highest).delta0 for w in wires) * routes.BELOW_GAP
     window = edge - compiled.core.REACH * BOLTZMANN * temperature
     must = "be above 0, and leave room between its thermal window and the gap"
     require(0 < window < edge, "temperature", must, f"it is {temperature:g} K")
-    levels = compiled.levels(wires, grids["mu"], grids["B"], 2, theta)
+    levels = routes.levels(wires, grids["mu"], grids["B"], 2, theta)
     bare = [replace(w, barrier=(0.0, 0.0)) for w in wires]
     topological = (
         topological_visibility(bare, grids["mu"], grids["B"], theta=theta).sel(lead="L") < 0

@@ -50,10 +50,13 @@ def conductance_gradient(
     Raises
     ------
     ArgumentError
-        If the wire is not one or has dissipation, or a grid is empty, unsorted or out of range.
+        If the wire is not one, has dissipation or a critical field, or a grid is empty, unsorted
+        or out of range.
     """
     require(isinstance(wire, Nanowire), "wire", "be a Nanowire", f"it is {shown(wire)}")
     require(wire.dissipation == 0, "wire", "have no dissipation for slopes", "it has")
+    without = np.isinf(wire.critical_field)
+    require(bool(without), "wire", "have no critical field for slopes", "it has")
     growth_limit = number_in("growth_limit", growth_limit, 0.0, np.inf)
     edge = wire.delta0 * (1 - 1e-6)
     grids = {

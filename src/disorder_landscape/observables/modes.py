@@ -72,6 +72,7 @@ def modes(wire: Nanowire, mu: float, B: float, count: int = 1, theta: float = 0.
     require(isinstance(wire, Nanowire), "wire", "be a Nanowire", f"it is {shown(wire)}")
     require(wire.dissipation == 0, "wire", "have no dissipation for its levels", "it has")
     mu, B = number_in("mu", mu, -1e3, 1e3, "meV"), number_in("B", B, -100.0, 100.0, "T")
+    wire = wire.in_field(B)
     theta = number_in("theta", theta, -FULL_TURN, FULL_TURN, "radians")
     count = whole_number_in("count", count, 1, 2 * wire.sites)
     E = compiled.levels([wire], np.array([mu]), np.array([B]), count, theta)[0, 0, 0]

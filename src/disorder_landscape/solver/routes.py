@@ -7,7 +7,8 @@ where they can be, or sums over a grid of energies, as the paper's.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,22 +67,64 @@ def bare_conductance(
     solver: str = "fast",
 ) -> FloatArray:
     """Return the T = 0 conductances at ±ω, shape (wire, mu, B, omega, 2, 4), in e²/h."""
-    if solver == "fast":
-        return compiled.bare_conductance(wires, mu, B, omega, theta)
-    from disorder_landscape.solver import kwant_reference  # it takes a second to import
 
-    return kwant_reference.bare_conductance(wires, mu, B, omega, theta)
+    def solve(some: Sequence[Nanowire], fields: FloatArray) -> tuple[FloatArray]:
+        if solver == "fast":
+            return (compiled.bare_conductance(some, mu, fields, omega, theta),)
+        from disorder_landscape.solver import kwant_reference  # it takes a second to import
+
+        return (kwant_reference.bare_conductance(some, mu, fields, omega, theta),)
+
+    return in_fields(solve, wires, B, axis=2)[0]
 
 
 def reflection_determinant(
     wires: Sequence[Nanowire], mu: FloatArray, B: FloatArray, theta: float, solver: str = "fast"
 ) -> FloatArray:
     """Return det r at ω = 0 of both ends of wires without dissipation, (wire, lead, mu, B)."""
-    if solver == "fast":
-        return compiled.reflection_determinant(wires, mu, B, theta)
-    from disorder_landscape.solver import kwant_reference
 
-    return kwant_reference.reflection_determinant(wires, mu, B, theta)
+    def solve(some: Sequence[Nanowire], fields: FloatArray) -> tuple[FloatArray]:
+        if solver == "fast":
+            return (compiled.reflection_determinant(some, mu, fields, theta),)
+        from disorder_landscape.solver import kwant_reference
+
+        return (kwant_reference.reflection_determinant(some, mu, fields, theta),)
+
+    return in_fields(solve, wires, B, axis=3)[0]
+
+
+def levels(
+    wires: Sequence[Nanowire], mu: FloatArray, B: FloatArray, count: int, theta: float = 0.0
+) -> FloatArray:
+    """Return the lowest levels as `compiled.levels` does, shape (wire, mu, B, level)."""
+
+    def solve(some: Sequence[Nanowire], fields: FloatArray) -> tuple[FloatArray]:
+        return (compiled.levels(some, mu, fields, count, theta),)
+
+    return in_fields(solve, wires, B, axis=2)[0]
+
+
+def in_fields(
+    solve: Callable[[Sequence[Nanowire], FloatArray], tuple[NDArray[Any], ...]],
+    wires: Sequence[Nanowire],
+    B: FloatArray,
+    axis: int,
+) -> tuple[NDArray[Any], ...]:
+    """Return what is solved for all fields, one at a time where a gap depends on the field.
+
+    Parameters
+    ----------
+    solve : callable
+        Returns arrays for wires and fields.
+    wires : sequence of Nanowire
+    B : array, shape (B,)
+    axis : int
+        That of B in these arrays.
+    """
+    if all(np.isinf(wire.critical_field) for wire in wires):
+        return solve(wires, B)
+    each = [solve([w.in_field(float(b)) for w in wires], B[f : f + 1]) for f, b in enumerate(B)]
+    return tuple(np.concatenate(parts, axis=axis) for parts in zip(*each, strict=True))
 
 
 def thermal_average(
@@ -98,6 +141,22 @@ def thermal_average(
     quadrature where it does not or the wire has dissipation, and for the rare set of which no
     rational model within the tolerance is found.
     """
+
+    def solve(some: Sequence[Nanowire], fields: FloatArray) -> ThermalConductance:
+        return _average(some, mu, fields, bias, temperature, theta)
+
+    return ThermalConductance(*in_fields(solve, wires, B, axis=2))
+
+
+def _average(
+    wires: Sequence[Nanowire],
+    mu: FloatArray,
+    B: FloatArray,
+    bias: FloatArray,
+    temperature: float,
+    theta: float,
+) -> ThermalConductance:
+    """Return the average of wires whose gap does not depend on the field."""
     window = abs(bias).max() + compiled.core.REACH * BOLTZMANN * temperature
     dissipative = any(w.dissipation > 0 for w in wires)
     if dissipative or window > BELOW_GAP * min(w.delta0 for w in wires):

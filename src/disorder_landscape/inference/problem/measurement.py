@@ -28,7 +28,7 @@ QUANTA = ("", "e^2/h", "e²/h", "e**2/h", "e2/h")
 """Units that conductances may state."""
 LARGEST = 10.0
 """In e²/h: no conductance of a wire with one subband is above 4."""
-FIXED = ("mass", "lattice", "g", "gamma", "delta0", "dissipation")
+FIXED = ("mass", "lattice", "g", "gamma", "delta0", "critical_field", "dissipation")
 """Parameters of `Nanowire` that all wires of this program's models have in common."""
 AXIS_UNITS = {"mu": ("meV",), "B": ("T", "tesla"), "bias": ("meV", "mV")}
 """Units that axes may state."""
