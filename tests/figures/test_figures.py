@@ -40,6 +40,7 @@ SCRIPTS = {
     "figure_S10": "figure_S10_verification",
     "figure_S11": "figure_S11_learning_curves",
     "figure_S12": "figure_S12_inversion",
+    "figure_S13": "figure_S13_inside",
 }
 CONDUCTANCES = ("G_LL", "G_RR", "G_LR", "G_RL")
 
