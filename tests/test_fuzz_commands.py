@@ -299,30 +299,57 @@ def _simulated(folder):
                 assert np.isfinite(written[name]).all()
 
 
+WIRE_OPTIONS = {
+    "--potential": st.sampled_from(["V.csv", "V.npy", "V.nc", *NEW_FILES]),
+    "--seed": texts("0", "3", "-3", "99999999999999999999"),
+    "--components": texts("0", "2", "5", "6"),
+    "--sites": texts("6", "2", "1", "0", "9", "-6", "1000000000000000"),
+    "--alpha": texts("0", "8", "100", "101"),
+    "--g": texts("0", "25", "100"),
+    "--gamma": texts("0", "0.15", "10"),
+    "--delta0": texts("0.12", "0.001", "10", "0"),
+    "--critical-field": texts("1", "0.5", "inf", "0"),
+    "--barrier": texts("15", "0,30", "-5,5", "1,2,3", "15,", "1e3,-1e3"),
+    "--theta": texts("0", "30", "90", "360", "361"),
+    "--temperature": texts("0", "0.05", "0.2", "10", "11"),
+    "--output": st.sampled_from(NEW_FILES),
+    "--plot": st.sampled_from(["new.png", "new.pdf", "new.svg", "new.jpg", *NEW_FILES]),
+}
+POTENTIALS = st.fixed_dictionaries(dict.fromkeys(("V.csv", "V.npy", "V.nc"), odd_bytes))
+
+
 @argument_sets(20)
 def test_simulate_writes_or_refuses(count, refused_or_done):
     options = {
-        "--potential": st.sampled_from(["V.csv", "V.npy", "V.nc", *NEW_FILES]),
-        "--seed": texts("0", "3", "-3", "99999999999999999999"),
-        "--components": texts("0", "2", "5", "6"),
-        "--sites": texts("6", "2", "1", "0", "9", "-6", "1000000000000000"),
-        "--alpha": texts("0", "8", "100", "101"),
-        "--g": texts("0", "25", "100"),
-        "--gamma": texts("0", "0.15", "10"),
-        "--delta0": texts("0.12", "0.001", "10", "0"),
-        "--barrier": texts("15", "0,30", "-5,5", "1,2,3", "15,", "1e3,-1e3"),
-        "--temperature": texts("0", "0.05", "0.2", "10", "11"),
+        **WIRE_OPTIONS,
         "--mu": texts("0", "0,0.1", "0:0.6:2", "-5:30:3"),
         "--B": texts("0", "0.1,0.5", "0:0.8:2", "-1:5:3"),
-        "--theta": texts("0", "30", "90", "360", "361"),
         "--bias": texts("0", "-0.04:0.04:3", "0.11", "0.12"),
         "--solver": texts("fast", "Fast"),
-        "--output": st.sampled_from(NEW_FILES),
-        "--plot": st.sampled_from(["new.png", "new.pdf", "new.svg", "new.jpg", *NEW_FILES]),
     }
-    files = st.fixed_dictionaries(dict.fromkeys(("V.csv", "V.npy", "V.nc"), odd_bytes))
-    one = commands("simulate", st.just([]), options, files, SMALL)
+    one = commands("simulate", st.just([]), options, POTENTIALS, SMALL)
     tried(count, one, lambda command: refused_or_done(command, _simulated))
+
+
+@argument_sets(15)
+def test_modes_writes_or_refuses(count, refused_or_done):
+    options = {
+        **WIRE_OPTIONS,
+        "--mu": texts("0", "0.1", "-5", "30"),
+        "--B": texts("0", "0.5", "-1", "5"),
+        "--count": texts("1", "4", "12", "13", "0"),
+        "--energy": texts("0", "-0.1:0.1:3", "0.12", "-100,100", "200"),
+    }
+    usual = {"--sites": "6", "--count": "1", "--energy": "-0.1:0.1:3", "--output": "new.nc"}
+
+    def wanted(folder):
+        for path in folder.glob("new.nc"):
+            with xr.open_dataset(path, engine="h5netcdf") as written:
+                for name in ("level", "wave_function", "LDOS_electron", "overlap"):
+                    assert np.isfinite(written[name]).all()
+
+    one = commands("modes", st.just([]), options, POTENTIALS, usual)
+    tried(count, one, lambda command: refused_or_done(command, wanted))
 
 
 # TOML files

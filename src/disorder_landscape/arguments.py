@@ -69,7 +69,8 @@ def number_in(name: str, value: object, low: float, high: float, unit: str = "")
     """
     must = f"be a number from {low:g} to {high:g} {unit}".rstrip()
     try:
-        one = reals(name, value, must)  # type: ignore[arg-type]
+        # What is a float needs no array: wires are made by the thousand.
+        one = np.float64(value) if type(value) is float else reals(name, value, must)  # type: ignore[arg-type]
     except ArgumentError:
         raise ArgumentError(name, must, f"it is {shown(value)}") from None
     require(one.ndim == 0, name, must, f"it is {shown(value)}")
