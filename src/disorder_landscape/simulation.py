@@ -186,15 +186,13 @@ def plot_simulation(result: xr.Dataset, path: Path) -> None:
     ArgumentError
         If the file cannot be written.
     """
-    import matplotlib as mpl
-
-    mpl.use("Agg")
-    from matplotlib import pyplot as plt
+    from matplotlib.figure import Figure
 
     axes = sorted(("mu", "B", "bias"), key=lambda name: result.sizes[name])
     shown = result.isel({axes[0]: result.sizes[axes[0]] // 2})
     y, x = sorted(axes[1:], key=["bias", "mu", "B"].index)
-    figure, panels = plt.subplots(1, 4, figsize=(12, 3), layout="constrained")
+    figure = Figure(figsize=(12, 3), layout="constrained")
+    panels = figure.subplots(1, 4)
     for panel, name in zip(panels, CONDUCTANCES, strict=True):
         G = shown[name]
         if shown.sizes[y] == 1 or shown.sizes[x] == 1:
@@ -206,4 +204,3 @@ def plot_simulation(result: xr.Dataset, path: Path) -> None:
         panel.set_title("")
     figure.suptitle(f"{axes[0]} = {float(shown[axes[0]]):.3g} {result[axes[0]].attrs['units']}")
     write_picture(path, figure, dpi=150)
-    plt.close(figure)

@@ -256,7 +256,7 @@ def test_the_seed_decides(measured, inferred):
         ),
         (lambda G: G * np.nan, {}, "hold finite numbers, but it holds none"),
         (lambda G: G / 0.0, {}, "hold finite numbers"),
-        (lambda G: G.isel(mu=0), {}, "its dims are B, bias"),
+        (lambda G: G.isel(mu=0), {}, "the dims of G_LL are B, bias"),
         (lambda G: G.drop_vars(CONDUCTANCES), {}, "it lacks G_LL, G_RR, G_LR, G_RL"),
         (lambda G: G.isel(mu=slice(5)), {"network": True}, "it differs in mu"),
         (lambda G: G.isel(B=[0, 1, 1, 2, 3, 4]), {}, "B must be .* not sorted"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from importlib.metadata import version
 from typing import Any
 
@@ -16,7 +17,7 @@ from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset.store import PACKAGES
 from disorder_landscape.machine import cores, cpu_name
 from disorder_landscape.model.disorder import disorder_realization
-from disorder_landscape.model.parameters import ALPHA_RANGE, TEMPERATURE, Nanowire
+from disorder_landscape.model.parameters import ALPHA_RANGE, TEMPERATURE, FloatArray, Nanowire
 from disorder_landscape.solver import compiled
 from disorder_landscape.solver.energy_grid import thermal_grid
 from disorder_landscape.solver.routes import thermal_average
@@ -42,6 +43,17 @@ WIDE = np.linspace(0.0, 0.6, 64), np.linspace(0.1, 0.8, 4)
 MEMORY = tuple(DatasetConfig(realizations=n, sites=100) for n in (50, 200))
 """Datasets that are generated to see the memory it takes."""
 
+BEYOND = (
+    "set at 100 mK",
+    "set at 300 mK",
+    "set with dissipation 1 ueV",
+    "set with the field at 30 degrees",
+    "local density of states, 201 energies",
+    "lowest two levels",
+    "lowest two modes",
+)
+"""What is given as a multiple of a set of the paper's."""
+
 Progress = Callable[[int], object]
 """Called with 1 after each turn; the first, which warms up and is not counted, is one more."""
 
@@ -64,6 +76,7 @@ def measure(repeats: int, progress: Progress = lambda done: None) -> dict[str, A
     grids = {name: (config.mu, config.B) for name, config in DATASETS.items()}
     five, grid = wires["5 components"], grids["5 components"]
     few = grid[0][2::5], grid[1][2::5]
+    sparse = grid[0][2::6], grid[1][2::6]
     threads = min(THREADS, cores())
     watches = {
         "Kwant, per energy": stopwatches.kwant(five[0], *grid),
@@ -75,6 +88,7 @@ def measure(repeats: int, progress: Progress = lambda done: None) -> dict[str, A
         "per set, threads": stopwatches.sets(five, *grid, threads),
         "per set, 10 components": stopwatches.sets(wires["10 components"], *grids["10 components"]),
         "per set, energy grid": stopwatches.energy_grid(five[0], *grid, PAPER_SPACING),
+        **_beyond(five[0], *sparse),
         **{f"per energy, {n} sites": stopwatches.bare(some[0], *grid) for n, some in long.items()},
         **{f"per set, {n} sites": stopwatches.sets(some, *few) for n, some in long.items()},
     }
@@ -115,6 +129,9 @@ def measure(repeats: int, progress: Progress = lambda done: None) -> dict[str, A
         },
         "threads": threads,
         "speed-up": _ratio(seconds["per set, 5 components"], seconds["per set, threads"]),
+        "beyond / per set": {
+            name: _ratio(seconds[name], seconds["per set, sparse grid"]) for name in BEYOND
+        },
         "gradient / conductance": _ratio(
             seconds["gradient, per bias"], seconds["per energy, gradient grid"]
         ),
@@ -127,6 +144,24 @@ def measure(repeats: int, progress: Progress = lambda done: None) -> dict[str, A
         "peak MiB": {
             str(config.realizations): stopwatches.peak_memory(config) for config in MEMORY
         },
+    }
+
+
+def _beyond(wire: Nanowire, mu: FloatArray, B: FloatArray) -> dict[str, Stopwatch]:
+    """Return what a set at the paper's temperature is compared with, on the same grid."""
+    leaking = replace(wire, dissipation=1e-3)
+    watches = (
+        stopwatches.sets([wire], mu, B, temperature=0.1),
+        stopwatches.sets([wire], mu, B, temperature=0.3),
+        stopwatches.sets([leaking], mu, B),
+        stopwatches.sets([wire], mu, B, theta=np.pi / 6),
+        stopwatches.density(wire, mu, B),
+        stopwatches.levels(wire, mu, B),
+        stopwatches.lowest_modes(wire, mu, B),
+    )
+    return {
+        "per set, sparse grid": stopwatches.sets([wire], mu, B),
+        **dict(zip(BEYOND, watches, strict=True)),
     }
 
 

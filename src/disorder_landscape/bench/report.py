@@ -84,5 +84,9 @@ def table(found: dict[str, Any]) -> Iterator[str]:
     what = "per energy, gradient grid"
     yield line(what, 1e6 * times[what], "us", 3)
     yield line("gradient / conductance", found["gradient / conductance"], "", 2)
+    yield ""
+    yield f"one mu and B as a multiple of a set at {1e3 * TEMPERATURE:g} mK"
+    for name, times_as_long in found["beyond / per set"].items():
+        yield line(name, times_as_long, "", 2)
     for realizations, peak in found["peak MiB"].items():
         yield line(f"peak memory, {realizations} realizations", peak, "MiB")

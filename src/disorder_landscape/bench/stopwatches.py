@@ -16,7 +16,9 @@ from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset import shards
 from disorder_landscape.model.parameters import BIAS, TEMPERATURE, FloatArray, Nanowire
 from disorder_landscape.observables.conductance import conductance
+from disorder_landscape.observables.density_of_states import local_density_of_states
 from disorder_landscape.observables.gradient import conductance_gradient
+from disorder_landscape.observables.modes import modes
 from disorder_landscape.solver import compiled, kwant_reference
 from disorder_landscape.solver.routes import thermal_average
 
@@ -24,6 +26,9 @@ ENERGIES = np.linspace(0.001, 0.08, 16)
 """In meV, for the times per energy."""
 BIASES = np.array(BIAS)
 """In meV, for the times per set of one μ and B."""
+
+DENSITY = np.linspace(-0.1, 0.1, 201)
+"""Energies of a local density of states, in meV."""
 
 Stopwatch = Callable[[], float]
 """Takes the time of one call and returns the seconds per energy, per bias or per set."""
@@ -66,14 +71,41 @@ def energy_grid(wire: Nanowire, mu: FloatArray, B: FloatArray, spacing: float) -
     return lambda: _seconds(average) / (mu.size * B.size)
 
 
-def sets(wires: list[Nanowire], mu: FloatArray, B: FloatArray, threads: int = 1) -> Stopwatch:
+def sets(
+    wires: list[Nanowire],
+    mu: FloatArray,
+    B: FloatArray,
+    threads: int = 1,
+    temperature: float = TEMPERATURE,
+    theta: float = 0.0,
+) -> Stopwatch:
     """Time the exact thermal average, per (wire, μ, B), on so many threads."""
 
     def average() -> None:
         with compiled.threads_at_work(threads):
-            thermal_average(wires, mu, B, BIASES, TEMPERATURE)
+            thermal_average(wires, mu, B, BIASES, temperature, theta)
 
     return lambda: _seconds(average) / (len(wires) * mu.size * B.size)
+
+
+def density(wire: Nanowire, mu: FloatArray, B: FloatArray) -> Stopwatch:
+    """Time the local density of states of DENSITY energies at TEMPERATURE, per (μ, B)."""
+
+    def look() -> object:
+        return local_density_of_states(wire, mu, B, DENSITY, TEMPERATURE)
+
+    return lambda: _seconds(look) / (mu.size * B.size)
+
+
+def levels(wire: Nanowire, mu: FloatArray, B: FloatArray) -> Stopwatch:
+    """Time the lowest two levels, per (μ, B)."""
+    return lambda: _seconds(lambda: compiled.levels([wire], mu, B, 2)) / (mu.size * B.size)
+
+
+def lowest_modes(wire: Nanowire, mu: FloatArray, B: FloatArray) -> Stopwatch:
+    """Time the lowest two modes with their wave functions, per (μ, B)."""
+    points = [(m, b) for m in mu.tolist() for b in B.tolist()]
+    return lambda: _seconds(lambda: [modes(wire, *point, 2) for point in points]) / len(points)
 
 
 def _seconds(action: Callable[[], object]) -> float:

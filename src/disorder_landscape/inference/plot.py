@@ -43,13 +43,11 @@ def plot_inference(result: xr.Dataset, measurement: Measurement, path: Path) -> 
         If the file cannot be written.
     """
     import matplotlib as mpl
+    from matplotlib.figure import Figure
 
-    mpl.use("Agg")
-    from matplotlib import pyplot as plt
-
-    with plt.rc_context({"font.size": 8, "axes.titlesize": 8}):
-        figure = plt.figure(figsize=FIGURE_SIZE, layout="constrained")
-        panels = figure.subplot_mosaic(
+    with mpl.rc_context({"font.size": 8, "axes.titlesize": 8}):
+        figure = Figure(figsize=FIGURE_SIZE, layout="constrained")
+        panels: dict[str, Any] = figure.subplot_mosaic(
             [
                 ["V"] * 4,
                 ["std"] * 4,
@@ -68,7 +66,6 @@ def plot_inference(result: xr.Dataset, measurement: Measurement, path: Path) -> 
         title = f"{result.attrs['verdict']}; from {result.attrs['start']}"
         figure.suptitle(title, fontsize=8, color=color)
         write_picture(path, figure, dpi=200)
-        plt.close(figure)
 
 
 def _potential(panel: Any, result: xr.Dataset) -> None:

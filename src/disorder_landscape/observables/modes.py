@@ -29,8 +29,10 @@ from disorder_landscape.solver import compiled
 
 NAMBU = ("u_up", "u_down", "-v_down", "v_up")
 """Components of the spinor, in the order of Eq. S1's basis."""
-EQUAL = 1e-9
+EQUAL = 1e-11
 """Levels nearer to each other than this, in meV, are one, of several wave functions."""
+NEAR_ZERO = 1e-9
+"""A level below this, in meV, is taken together with its mirror image."""
 ITERATIONS = 4
 """Inverse iterations; at a level that is known to 1e-12 meV the first one leaves 1e-9 of others."""
 DIAGONAL = 7
@@ -110,7 +112,7 @@ def _wave_functions(
     wire: Nanowire, mu: float, B: float, theta: float, E: FloatArray
 ) -> ComplexArray:
     """Return orthonormal wave functions of so many equal levels, shape (level, site, 4)."""
-    level, near_zero = float(E.mean()), bool(E[0] < EQUAL)
+    level, near_zero = float(E.mean()), bool(E[0] < NEAR_ZERO)
     blocks = onsite(wire, wire.potential_with_barriers, mu, B, level, theta)
     matrix = banded(level * np.eye(4) - blocks, -hopping(wire))
     matrix[DIAGONAL] += ROUNDING * wire.hopping  # no pivot vanishes at the level itself
