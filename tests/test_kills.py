@@ -22,10 +22,11 @@ from disorder_landscape.studies.rows import read_rows
 
 KILLS = 100
 WIRE = "sites = 60\ncomponents = 2\nmu_points = 5\nB_points = 5\nbias = [-0.03, 0.0, 0.03]\n"
+LEARNT = WIRE.replace("_points = 5", "_points = 8").replace("-0.03, 0.0", "-0.02, 0.0, 0.01")
 TRAINING = f"""
 [dataset]
 realizations = 40
-{WIRE}
+{LEARNT}
 [network]
 width_fraction = 0.01
 [training]
@@ -36,7 +37,7 @@ kind = "trainings"
 title = "three trainings"
 [base.dataset]
 realizations = 12
-{WIRE}
+{LEARNT}
 [base.network]
 width_fraction = 0.01
 [base.training]
