@@ -1,10 +1,11 @@
 """Figure 2: realizations that a network needs for R² = 0.77, over the number of components.
 
 Each point is where measured learning curves (Figure S11) cross R² = 0.77: the geometric mean over
-seeds, bars from the smallest to the largest. Straight lines on logarithmic axes are power laws: the
-fits to these points, and the paper's; dotted is the exponential that fits the paper's network best.
-Drawn from what `landscape study learning_curves` and `landscape study learning_curves_residual`
-have measured: the paper's network by its recipe, and a residual one from mirrored, compressed data.
+seeds, bars from the smallest to the largest; an arrow where the longest curve stays below. Straight
+lines on logarithmic axes are power laws: the fits to these points, and the paper's; dotted is the
+exponential that fits the paper's network best. Drawn from what `landscape study learning_curves`
+and `landscape study learning_curves_residual` have measured: the paper's network by its recipe, and
+a residual one from mirrored, compressed data.
 """
 
 from __future__ import annotations
@@ -37,14 +38,20 @@ COLOURS = dict(zip(TABLES, ("k", INPUT), strict=True))
 
 
 def data(request: Request) -> xr.Dataset:
-    """Return network, components, seed and realizations of each crossing; fits by network (fit)."""
-    crossings, fits = zip(*map(_measured, TABLES), strict=True)
-    both: xr.Dataset = xr.merge([xr.concat(crossings, "crossing"), xr.concat(fits, "fit")])
-    return both
+    """Return network, components, seed and realizations of each crossing; fits by network (fit).
+
+    And of curves that do not cross network, components and largest realizations (bound).
+    """
+    parts = zip(*map(_measured, TABLES), strict=True)
+    dims = ("crossing", "fit", "bound")
+    merged: xr.Dataset = xr.merge(
+        [xr.concat(part, dim) for part, dim in zip(parts, dims, strict=True)]
+    )
+    return merged
 
 
-def _measured(network: str) -> tuple[xr.Dataset, xr.Dataset]:
-    """Return the crossings of a network's learning curves, and what is fitted to them."""
+def _measured(network: str) -> tuple[xr.Dataset, xr.Dataset, xr.Dataset]:
+    """Return the crossings of a network's curves, what is fitted to them, and where none is."""
     curves = learning_curves(read_table(TABLES[network]))
     rows = [
         (curve.components, seed, crossing)
@@ -73,19 +80,36 @@ def _measured(network: str) -> tuple[xr.Dataset, xr.Dataset]:
         "exponential_rate": exponential.exponent,
         "exponential_fit_R2": exponential.R2,
     }
-    return crossings, xr.Dataset({name: ("fit", [value]) for name, value in fits.items()})
+    below = [curve for curve in curves if not np.isfinite(curve.crossings()).all()]
+    bounds = {
+        "bound_network": [network] * len(below),
+        "bound_components": [curve.components for curve in below],
+        "at_least": [curve.realizations[-1] for curve in below],
+    }
+    return (
+        crossings,
+        xr.Dataset({name: ("fit", [value]) for name, value in fits.items()}),
+        xr.Dataset({name: ("bound", values) for name, values in bounds.items()}),
+    )
 
 
 def draw(data: xr.Dataset) -> Figure:
     """Draw the figure."""
     figure = Figure(figsize=(COLUMN, 3.3))
     axes = inches(figure, 0.62, 0.42, COLUMN - 0.72, 2.78)
-    n = np.unique(data["components"])
+    n = np.unique(np.concatenate([data["components"], data["bound_components"]])).astype(int)
     x = np.geomspace(0.9 * n[0], 1.1 * n[-1], 50)
     papers = PowerLaw(*(paper_value(f"fig2-{name}") for name in ("prefactor", "exponent", "fit")))
     axes.plot(x, papers(x), "--", color=PREDICTION, lw=1, label=_formula("paper", papers))
     for fit in range(data.sizes["fit"]):
         _draw_network(axes, data, data.isel(fit=fit), x)
+    for network, count, least in zip(
+        *(data[name].values for name in ("bound_network", "bound_components", "at_least")),
+        strict=True,
+    ):
+        axes.errorbar(
+            count, least, least, lolims=True, fmt="o", color=COLOURS[network], ms=3, lw=0.8, mfc="w"
+        )
     deciding = data.isel(fit=0)
     y = deciding["exponential_prefactor"].item() * np.exp(deciding["exponential_rate"].item() * x)
     axes.plot(x, y, ":", color="0.4", lw=1, label=_exponential(deciding))
