@@ -83,6 +83,7 @@ def plot_inside(result: xr.Dataset, path: Path) -> None:
         seen = levels[(levels >= energy.min().item()) & (levels <= energy.max().item())]
         middle.hlines(seen, 0.98 * x[-1], x[-1], "w", lw=1.5)
         middle.set_ylabel("energy (µeV)")
+        middle.set_title("white at the right: levels without leads", loc="left", fontsize=8)
     else:
         middle.plot(x, density[0], "k-", lw=1)
         middle.set_ylabel("LDOS (1/meV per site)")

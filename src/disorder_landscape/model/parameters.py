@@ -121,8 +121,10 @@ class Nanowire:
         if np.isinf(self.critical_field):
             return self
         left = self.delta0 * np.sqrt(max(0.0, 1 - (B / self.critical_field) ** 2))
+        least = PARAMETER_RANGES["delta0"][0]
         must = f"stay below the critical field of {self.critical_field:g} T, where the gap closes"
-        require(left >= PARAMETER_RANGES["delta0"][0], "B", must, f"it reaches {B:g} T")
+        but = f"at {B:g} T it is less than {least:g} meV"
+        require(left >= least, "B", must, but)
         return replace(self, delta0=left, critical_field=np.inf)
 
     @property

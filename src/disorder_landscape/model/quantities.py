@@ -30,6 +30,7 @@ QUANTITIES = {
     "wire_weight": ("share of the mode that is in the wire, not in its parent", "1"),
     "majorana_A": ("left Majorana component of the lowest pair, normalised to 1", "1"),
     "majorana_B": ("right Majorana component of the lowest pair, normalised to 1", "1"),
+    "separation": ("distance of the Majorana components as a share of the wire", "1"),
     "overlap": ("overlap of the moduli of the Majorana components", "1"),
     "E_1": ("lowest level without leads", "meV"),
     "E_2": ("second level without leads", "meV"),

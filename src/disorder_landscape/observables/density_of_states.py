@@ -10,10 +10,9 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
-from scipy.linalg import solve_banded
 
 from disorder_landscape.arguments import grid_in, number_in, require, shown
-from disorder_landscape.model.hamiltonian import FULL_TURN, ComplexArray, banded, hopping, onsite
+from disorder_landscape.model.hamiltonian import FULL_TURN, ComplexArray
 from disorder_landscape.model.parameters import BOLTZMANN, FloatArray, Nanowire, checked_temperature
 from disorder_landscape.model.quantities import with_units
 from disorder_landscape.solver import compiled
@@ -30,6 +29,9 @@ SPACING = 0.5
 """Distance in kT of the energies on it; the rule's error is exp(−2π HEIGHT/SPACING) = 3e-9."""
 REACH = 20.0
 """The line reaches this many kT beyond the energies, where 2e-9 of the kernel is cut."""
+NARROWEST = 1e-9
+"""Width in meV that a peak has where a part of the wire has a level at an energy: 1e-6 of G is lost
+then, and all of it without."""
 SIZE = 2**22
 """Numbers (B, energy, site) that are calculated at a time."""
 
@@ -130,23 +132,11 @@ def _green(
     sigma: ComplexArray,
     theta: float,
 ) -> ComplexArray:
-    """Return G summed over the spin, shape (mu, z, site, 2), pivoted where digits were lost."""
+    """Return G summed over the spin, shape (mu, z, site, 2); NARROWEST above where digits fail."""
     G, growth = compiled.local_green(wire, mu, np.array([B]), z, sigma[None], theta)
     for m, e in np.argwhere(~(growth[:, 0] < GROWTH_LIMIT)):
-        G[m, 0, e] = _pivoted_green(wire, float(mu[m]), B, complex(z[e]), sigma[e], theta)
+        above, some = z[[e]] + 1j * NARROWEST, slice(m, m + 1)
+        G[some, 0, e] = compiled.local_green(
+            wire, mu[some], np.array([B]), above, sigma[None, [e]], theta
+        )[0][:, 0, 0]
     return G[:, 0]
-
-
-def _pivoted_green(
-    wire: Nanowire, mu: float, B: float, z: complex, sigma: ComplexArray, theta: float
-) -> ComplexArray:
-    """Return G summed over the spin, shape (site, 2), by elimination with pivoting."""
-    z = complex(z.real, max(z.imag, np.finfo(float).tiny))  # which side of the real axis it is on
-    blocks = z * np.eye(4) - onsite(wire, wire.potential_with_barriers, mu, B, z, theta)
-    for site, of_charges in ((0, sigma[0]), (-1, sigma[1])):
-        for charge in range(2):
-            own = slice(2 * charge, 2 * charge + 2)
-            blocks[site, own, own] -= of_charges[charge]
-    columns = solve_banded((7, 7), banded(blocks, -hopping(wire)), np.eye(4 * wire.sites))
-    diagonal = np.diagonal(columns).reshape(wire.sites, 2, 2)
-    return np.asarray(diagonal.sum(axis=2))

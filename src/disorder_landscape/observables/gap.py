@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 import xarray as xr
@@ -14,7 +13,7 @@ from disorder_landscape.model.hamiltonian import FULL_TURN
 from disorder_landscape.model.parameters import BOLTZMANN, FloatArray, Nanowire, checked_temperature
 from disorder_landscape.model.quantities import with_units
 from disorder_landscape.observables.conductance import conductance
-from disorder_landscape.observables.visibility import topological_visibility
+from disorder_landscape.observables.modes import lowest_components, separation
 from disorder_landscape.solver import compiled, routes
 
 TEMPERATURE = 0.02
@@ -22,6 +21,9 @@ TEMPERATURE = 0.02
 THRESHOLD = 0.05
 """Share of its largest value from which an antisymmetric nonlocal conductance counts, by default,
 as in the topological gap protocol (Pikulin et al., arXiv:2103.12217)."""
+SEPARATE = 0.25
+"""Share of the wire from which the components of a level count as zero modes, apart. (det r of a
+short wire changes its sign with their splitting.)"""
 BIASES = 81
 """Biases from zero to the largest at which it is looked for."""
 
@@ -55,10 +57,12 @@ def gap(
         Dims (mu, B), with a leading dim realization for several wires, in meV:
 
         - E_1, E_2: the lowest levels E ≥ 0 without leads; NaN where there is none below Δ₀.
-        - excitation_gap: E_2 where det r < 0 at the left end without barriers, because E_1 is then
-          the Majorana pair; E_1 elsewhere.
-        - transport_gap: the lowest bias at which the antisymmetric part of G_LR or G_RL exceeds the
-          threshold; NaN where none does, up to the largest bias whose thermal window is below Δ₀.
+        - excitation_gap: E_2 where the components of E_1 are zero modes, their centres more
+          than a quarter of the wire apart (SEPARATE); E_1 elsewhere.
+        - transport_gap: the lowest of 81 biases at which what is odd in the bias of G_LR or G_RL
+          reaches the threshold; they go from zero to the largest one whose thermal window is below
+          this wire's gap in this field. NaN where it stays within 1e-4 e²/h, and where there is no
+          such bias.
 
     Raises
     ------
@@ -72,22 +76,24 @@ def gap(
     theta = number_in("theta", theta, -FULL_TURN, FULL_TURN, "radians")
     threshold = number_in("threshold", threshold, 0.0, 1.0)
     temperature = checked_temperature(temperature)
-    highest = abs(grids["B"]).max()
-    edge = min(w.in_field(highest).delta0 for w in wires) * routes.BELOW_GAP
-    window = edge - compiled.core.REACH * BOLTZMANN * temperature
-    must = "be above 0, and leave room between its thermal window and the gap"
-    require(0 < window < edge, "temperature", must, f"it is {temperature:g} K")
+    require(temperature > 0, "temperature", "be above 0", "it is 0")
     levels = routes.levels(wires, grids["mu"], grids["B"], 2, theta)
-    bare = [replace(w, barrier=(0.0, 0.0)) for w in wires]
-    topological = (
-        topological_visibility(bare, grids["mu"], grids["B"], theta=theta).sel(lead="L") < 0
-    )
-    bias = np.linspace(0, window, BIASES)
+    shape = levels.shape[:-1]
+    apart, transport = np.zeros(shape, dtype=bool), np.full(shape, np.nan)
+    for w, of_wire in enumerate(wires):
+        for f, field in enumerate(grids["B"].tolist()):
+            there = of_wire.in_field(field)
+            transport[w, :, f] = _transport_gap(
+                there, grids["mu"], field, temperature, threshold, theta
+            )
+            for m in np.flatnonzero(np.isfinite(levels[w, :, f, 1])):
+                at = there, float(grids["mu"][m]), field, theta
+                apart[w, m, f] = separation(*lowest_components(*at, levels[w, m, f])) > SEPARATE
     found = {
         "E_1": levels[..., 0],
         "E_2": levels[..., 1],
-        "excitation_gap": np.where(topological, levels[..., 1], levels[..., 0]),
-        "transport_gap": _transport_gap(wires, grids, bias, temperature, threshold, theta),
+        "excitation_gap": np.where(apart, levels[..., 1], levels[..., 0]),
+        "transport_gap": transport,
     }
     data = {name: (("realization", *grids), values) for name, values in found.items()}
     attrs = {"temperature": temperature, "threshold": threshold, "theta": theta}
@@ -96,18 +102,16 @@ def gap(
 
 
 def _transport_gap(
-    wires: Sequence[Nanowire],
-    grids: dict[str, FloatArray],
-    bias: FloatArray,
-    temperature: float,
-    threshold: float,
-    theta: float,
+    wire: Nanowire, mu: FloatArray, B: float, temperature: float, threshold: float, theta: float
 ) -> FloatArray:
-    """Return the lowest bias with a nonlocal conductance, shape (wire, mu, B)."""
+    """Return the lowest bias with a nonlocal conductance, shape (mu,)."""
+    window = routes.BELOW_GAP * wire.delta0 - compiled.core.REACH * BOLTZMANN * temperature
+    if window <= 0:
+        return np.full(mu.size, np.nan)
+    bias = np.linspace(0, window, BIASES)
     both = np.concatenate([-bias[:0:-1], bias])
-    G = conductance(wires, grids["mu"], grids["B"], both, temperature, theta=theta)
+    G = conductance(wire, mu, B, both, temperature, theta=theta).isel(B=0)
     nonlocal_G = np.stack([G.G_LR, G.G_RL])
-    antisymmetric = abs(nonlocal_G - nonlocal_G[..., ::-1])[..., bias.size - 1 :].max(axis=0)
-    largest = antisymmetric.max(axis=-1, keepdims=True)
-    counts = (antisymmetric >= threshold * largest) & (antisymmetric > 0)
+    odd = abs(nonlocal_G - nonlocal_G[..., ::-1])[..., bias.size - 1 :].max(axis=0) / 2
+    counts = odd >= np.maximum(threshold * odd.max(axis=-1, keepdims=True), compiled.core.TOLERANCE)
     return np.where(counts.any(axis=-1), bias[counts.argmax(axis=-1)], np.nan)

@@ -46,7 +46,7 @@ def modes(wire: Nanowire, mu: float, B: float, count: int = 1, theta: float = 0.
     Parameters
     ----------
     wire : Nanowire
-        Without dissipation.
+        Without dissipation and leads: levels need not be where the leads broaden and shift them.
     mu, B : float
         Chemical potential in meV and field in T.
     count : int
@@ -59,10 +59,12 @@ def modes(wire: Nanowire, mu: float, B: float, count: int = 1, theta: float = 0.
     xarray.Dataset
         - level (mode): E in meV.
         - wave_function (mode, site, nambu): ψ in the basis of Eq. S1, normalised to 1 in the wire.
+          As Σ depends on the energy, those of different levels are not orthogonal.
         - wire_weight (mode): 1/⟨ψ|1 − ∂Σ/∂ω|ψ⟩, the share that is not in the parent.
         - majorana_A, majorana_B (site, nambu): γ_A and γ_B of the lowest pair, each its own
           particle–hole image and normalised to 1, ψ = (γ_A + iγ_B)/√2 up to a phase; A is the one
-          further left.
+          further left. Every level has them: it is their distance that makes zero modes of them.
+        - separation: distance of the centres of |γ_A|² and |γ_B|² as a share of the wire.
         - overlap: of the moduli of both, summed over the sites; 0 if they are apart, 1 if equal.
 
     Raises
@@ -92,6 +94,7 @@ def modes(wire: Nanowire, mu: float, B: float, count: int = 1, theta: float = 0.
         "wire_weight": ("mode", [_weight(wire, e, wave) for e, wave in zip(E, waves, strict=True)]),
         "majorana_A": (("site", "nambu"), A),
         "majorana_B": (("site", "nambu"), other),
+        "separation": ((), separation(A, other)),
         "overlap": ((), float(moduli[0] @ moduli[1])),
     }
     coordinates = {
@@ -165,6 +168,19 @@ def _majorana_components(wave: ComplexArray) -> tuple[ComplexArray, ComplexArray
     _, turn = np.linalg.eigh(places)
     A, B = np.tensordot(turn.T, pair, 1)
     return A, B * np.linalg.det(turn)
+
+
+def lowest_components(
+    wire: Nanowire, mu: float, B: float, theta: float, levels: FloatArray
+) -> tuple[ComplexArray, ComplexArray]:
+    """Return γ_A and γ_B, shape (site, 4), of the lowest of some levels, in a wire's own field."""
+    return _majorana_components(_wave_functions(wire, mu, B, theta, _groups(levels)[0])[0])
+
+
+def separation(A: ComplexArray, B: ComplexArray) -> float:
+    """Return the distance of the centres of two components, shape (site, 4), over the length."""
+    centres = [(abs(one) ** 2).sum(axis=1) @ np.arange(len(one)) for one in (A, B)]
+    return float((centres[1] - centres[0]) / (len(A) - 1))
 
 
 def _weight(wire: Nanowire, E: float, wave: ComplexArray) -> float:
