@@ -64,7 +64,7 @@ def modes(wire: Nanowire, mu: float, B: float, count: int = 1, theta: float = 0.
         - majorana_A, majorana_B (site, nambu): γ_A and γ_B of the lowest pair, each its own
           particle–hole image and normalised to 1, ψ = (γ_A + iγ_B)/√2 up to a phase; A is the one
           further left. Every level has them: it is their distance that makes zero modes of them.
-        - separation: distance of the centres of |γ_A|² and |γ_B|² as a share of the wire.
+        - separation: distance of their centres of weight, as a share of the wire.
         - overlap: of the moduli of both, summed over the sites; 0 if they are apart, 1 if equal.
 
     Raises
