@@ -114,6 +114,11 @@ def wires(dissipation=True):
     return st.one_of(*[one] * 12, *[alike] * 3, unlike, odd_scalars(), st.just([Nanowire]))
 
 
+def of_wire(drawn, usual, odd):
+    """Draw a wire, and other arguments of a call."""
+    return st.builds(lambda wire, some: {"wire": wire} | some, drawn, some_changed(usual, odd))
+
+
 def is_one(wire):
     return isinstance(wire, Nanowire)
 
@@ -155,11 +160,7 @@ def conductance_arguments():
         "theta": st.one_of(st.just(0), number(-7.0, 7.0)),
     }
     usual = {"mu": 0.1, "B": [0.0, 0.4], "bias": [-0.02, 0.03]}
-    return st.builds(
-        lambda wire, some: {"wire": wire} | some,
-        wires(),
-        some_changed(usual, odd),
-    )
+    return of_wire(wires(), usual, odd)
 
 
 @argument_sets(150)
@@ -190,10 +191,8 @@ def test_conductance_gradient_answers_or_refuses(count):
         "growth_limit": number(1.0, 1e12, 2),
     }
     usual = {"mu": 0.1, "B": [0.0, 0.4], "bias": [-0.02, 0.03]}
-    arguments = st.builds(
-        lambda wire, some: {"wire": wire} | some,
-        st.one_of(*[good_wires(dissipation=False)] * 9, good_wires(), wires()),
-        some_changed(usual, odd),
+    arguments = of_wire(
+        st.one_of(*[good_wires(dissipation=False)] * 9, good_wires(), wires()), usual, odd
     )
 
     def check(arguments):
@@ -216,10 +215,10 @@ def test_topological_visibility_answers_or_refuses(count):
         "solver": st.sampled_from(["fast", "fast", "kwant", "Fast", None, 3, ["fast"]]),
         "theta": number(-7.0, 7.0),
     }
-    arguments = st.builds(
-        lambda wire, some: {"wire": wire} | some,
+    arguments = of_wire(
         st.one_of(*[good_wires(dissipation=False)] * 3, wires(dissipation=False), wires()),
-        some_changed({"mu": 0.1, "B": [0.0, 0.4]}, odd),
+        {"mu": 0.1, "B": [0.0, 0.4]},
+        odd,
     )
 
     def check(arguments):
@@ -240,11 +239,7 @@ def test_local_density_of_states_answers_or_refuses(count):
         "theta": number(-7.0, 7.0),
     }
     usual = {"mu": 0.1, "B": [0.0, 0.4], "energy": [-0.05, 0.12]}
-    arguments = st.builds(
-        lambda wire, some: {"wire": wire} | some,
-        st.one_of(*[good_wires()] * 9, wires()),
-        some_changed(usual, odd),
-    )
+    arguments = of_wire(st.one_of(*[good_wires()] * 9, wires()), usual, odd)
 
     def check(arguments):
         density = answer(lambda: dl.local_density_of_states(**arguments))
@@ -263,10 +258,8 @@ def test_modes_answers_or_refuses(count):
         "count": st.one_of(st.integers(-1, 5), odd_scalars()),
         "theta": number(-7.0, 7.0),
     }
-    arguments = st.builds(
-        lambda wire, some: {"wire": wire} | some,
-        st.one_of(*[good_wires(dissipation=False)] * 9, wires()),
-        some_changed({"mu": 0.1, "B": 0.4}, odd),
+    arguments = of_wire(
+        st.one_of(*[good_wires(dissipation=False)] * 9, wires()), {"mu": 0.1, "B": 0.4}, odd
     )
 
     def check(arguments):
@@ -289,10 +282,8 @@ def test_gap_answers_or_refuses(count):
         "threshold": number(0.0, 1.0),
         "theta": st.one_of(st.just(0), number(-7.0, 7.0)),
     }
-    arguments = st.builds(
-        lambda wire, some: {"wire": wire} | some,
-        st.one_of(*[good_wires(dissipation=False)] * 9, wires()),
-        some_changed({"mu": 0.1, "B": [0.0, 0.4]}, odd),
+    arguments = of_wire(
+        st.one_of(*[good_wires(dissipation=False)] * 9, wires()), {"mu": 0.1, "B": [0.0, 0.4]}, odd
     )
 
     def check(arguments):

@@ -1,6 +1,5 @@
 """kill −9 at a hundred random moments: the same command ends with what an undisturbed one makes."""
 
-import json
 import shutil
 import signal
 import subprocess
@@ -12,13 +11,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from disorder_landscape import conductance
-from disorder_landscape.config import Config, DatasetConfig
-from disorder_landscape.dataset.realizations import realization
-from disorder_landscape.dataset.store import write_dataset
 from disorder_landscape.learning.curves import read_curves
 from disorder_landscape.learning.model import load_model
 from disorder_landscape.studies.rows import read_rows
+from measurements import write_measurements
 
 KILLS = 100
 WIRE = "sites = 60\ncomponents = 2\nmu_points = 5\nB_points = 5\nbias = [-0.03, 0.0, 0.03]\n"
@@ -48,9 +44,6 @@ name = "few"
 [runs.grid]
 "training.realizations" = [3, 4, 6]
 """
-INVERTED = DatasetConfig(
-    realizations=3, components=2, sites=60, mu_points=5, B_points=5, bias=(-0.03, 0.0, 0.03)
-)
 
 
 class Generate:
@@ -87,13 +80,7 @@ class Train:
 
 class Infer:
     def prepare(self, folder):
-        (folder / "model").mkdir()
-        content = {"config": Config(dataset=INVERTED).model_dump(mode="json")}
-        (folder / "model" / "config.json").write_text(json.dumps(content))
-        for i in range(3):
-            wire = realization(INVERTED, i).wire
-            G = conductance(wire, INVERTED.mu, INVERTED.B, INVERTED.bias)
-            write_dataset(G, folder / f"{i}.nc", {})
+        write_measurements(folder)
 
     def command(self, folder, build):
         measurements = [folder / f"{i}.nc" for i in range(3)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -46,17 +47,12 @@ def reals(name: str, values: ArrayLike, must: str) -> NDArray[np.float64]:
     ArgumentError
         If there is anything else: complex numbers, truth values, dates, masked numbers.
     """
-    try:
+    with suppress(TypeError, ValueError, OverflowError), np.errstate(over="ignore"):
         given = np.asarray(values)
         is_complex = given.dtype == object and any(np.iscomplexobj(one) for one in given.flat)
-        real = given.dtype.kind in "fiuOUS" and not is_complex and not np.ma.is_masked(values)
-        require(real, name, must, "it holds something else")
-        with np.errstate(over="ignore"):
+        if given.dtype.kind in "fiuOUS" and not is_complex and not np.ma.is_masked(values):
             return np.array(given, dtype=np.float64, order="C")
-    except (TypeError, ValueError, OverflowError) as error:
-        if isinstance(error, ArgumentError):
-            raise
-        raise ArgumentError(name, must, "it holds something else") from None
+    raise ArgumentError(name, must, "it holds something else")
 
 
 def number_in(name: str, value: object, low: float, high: float, unit: str = "") -> float:

@@ -12,7 +12,7 @@ import xarray as xr
 
 from disorder_landscape.arguments import ArgumentError, numbers_of, require, whole_number_in
 from disorder_landscape.dataset.store import read_dataset
-from disorder_landscape.files import write_picture
+from disorder_landscape.files import check_netcdf, check_writable, write_picture
 from disorder_landscape.model.disorder import disorder_realization
 from disorder_landscape.model.parameters import MOST_SITES, FloatArray, Nanowire, checked_potential
 from disorder_landscape.model.quantities import CONDUCTANCES, with_units
@@ -164,6 +164,14 @@ def stated(wire: Nanowire) -> dict[str, Any]:
     """Return the parameters that a file states of the wire in it."""
     names = ("alpha", "mass", "lattice", "g", "gamma", "delta0", "critical_field")
     return {name: getattr(wire, name) for name in (*names, "barrier", "lead_mu")}
+
+
+def check_outputs(output: Path, plot: Path | None) -> None:
+    """Raise an ArgumentError where a command could not write its netCDF file, or its picture."""
+    check_netcdf("output", output)
+    if plot is not None:
+        check_plot(plot)
+        check_writable("plot", plot)
 
 
 @needs("figures")

@@ -1,16 +1,12 @@
 """Inversions from file to file: one, many, and two processes that want the same."""
 
-import json
 from functools import partial
 
 import pytest
 import xarray as xr
 
 from command_line import landscape
-from disorder_landscape import ArgumentError, conductance
-from disorder_landscape.config import Config, DatasetConfig
-from disorder_landscape.dataset.realizations import realization
-from disorder_landscape.dataset.store import write_dataset
+from disorder_landscape import ArgumentError
 from disorder_landscape.executors.local import LocalProcesses
 from disorder_landscape.inference.file import (
     Settings,
@@ -19,22 +15,14 @@ from disorder_landscape.inference.file import (
     infer_one_of_many,
     tasks_of_folder,
 )
-
-CONFIG = DatasetConfig(
-    realizations=1, components=2, sites=60, mu_points=5, B_points=5, bias=(-0.03, 0.0, 0.03)
-)
+from measurements import write_measurements
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     """A disorder model without a network, three measurements, and a file that is none."""
     folder = tmp_path_factory.mktemp("many")
-    (folder / "model").mkdir()
-    content = {"config": Config(dataset=CONFIG).model_dump(mode="json")}
-    (folder / "model" / "config.json").write_text(json.dumps(content))
-    for i in range(3):
-        wire = realization(CONFIG, i).wire
-        write_dataset(conductance(wire, CONFIG.mu, CONFIG.B, CONFIG.bias), folder / f"{i}.nc", {})
+    write_measurements(folder)
     (folder / "thesis.nc").write_text("Chapter 1")
     return folder
 

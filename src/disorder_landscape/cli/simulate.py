@@ -57,12 +57,8 @@ def simulate(
 
     from disorder_landscape import simulation
     from disorder_landscape.dataset.store import write_dataset
-    from disorder_landscape.files import check_netcdf, check_writable
 
-    check_netcdf("output", output)
-    if plot is not None:
-        simulation.check_plot(plot)
-        check_writable("plot", plot)
+    simulation.check_outputs(output, plot)
     wire = simulation.chosen_wire(
         potential,
         seed,

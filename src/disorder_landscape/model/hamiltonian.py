@@ -30,6 +30,8 @@ PAULI: dict[str, ComplexArray] = {
 }
 
 
+BANDS = 7
+"""Of the whole matrix on either side of its diagonal."""
 FULL_TURN = 2 * np.pi
 """Largest angle θ that is accepted, in radians."""
 
@@ -100,7 +102,7 @@ def wire_hamiltonian(
 
 
 def banded(blocks: ComplexArray, coupling: ComplexArray) -> ComplexArray:
-    """Return a block-tridiagonal matrix as `scipy.linalg.solve_banded` takes it, (15, 4·site).
+    """Return a block-tridiagonal matrix as solve_banded takes it, shape (2·BANDS + 1, 4·site).
 
     Parameters
     ----------
@@ -109,11 +111,11 @@ def banded(blocks: ComplexArray, coupling: ComplexArray) -> ComplexArray:
     coupling : array, shape (4, 4)
         From site i+1 to site i; its adjoint couples the other way.
     """
-    n, reach = len(blocks), 7
-    band = np.zeros((2 * reach + 1, 4 * n), dtype=complex)
+    n = len(blocks)
+    band = np.zeros((2 * BANDS + 1, 4 * n), dtype=complex)
     for i in range(4):
         for j in range(4):
-            band[reach + i - j, j::4] = blocks[:, i, j]
-            band[reach + i - j - 4, 4 + j :: 4] = coupling[i, j]
-            band[reach + i - j + 4, j : 4 * (n - 1) : 4] = coupling.conj().T[i, j]
+            band[BANDS + i - j, j::4] = blocks[:, i, j]
+            band[BANDS + i - j - 4, 4 + j :: 4] = coupling[i, j]
+            band[BANDS + i - j + 4, j : 4 * (n - 1) : 4] = coupling.conj().T[i, j]
     return band

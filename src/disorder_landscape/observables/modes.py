@@ -15,6 +15,7 @@ from scipy.linalg import schur, solve_banded
 
 from disorder_landscape.arguments import number_in, require, shown, whole_number_in
 from disorder_landscape.model.hamiltonian import (
+    BANDS,
     FULL_TURN,
     PARTICLE_HOLE,
     TAU_X,
@@ -35,8 +36,6 @@ NEAR_ZERO = 1e-9
 """A level below this, in meV, is taken together with its mirror image."""
 ITERATIONS = 4
 """Inverse iterations; at a level that is known to 1e-12 meV the first one leaves 1e-9 of others."""
-DIAGONAL = 7
-"""Bands of the Hamiltonian on either side of its diagonal."""
 ROUNDING = float(np.finfo(float).eps)
 
 
@@ -118,12 +117,12 @@ def _wave_functions(
     level, near_zero = float(E.mean()), bool(E[0] < NEAR_ZERO)
     blocks = onsite(wire, wire.potential_with_barriers, mu, B, level, theta)
     matrix = banded(level * np.eye(4) - blocks, -hopping(wire))
-    matrix[DIAGONAL] += ROUNDING * wire.hopping  # no pivot vanishes at the level itself
+    matrix[BANDS] += ROUNDING * wire.hopping  # no pivot vanishes at the level itself
     width = E.size * (2 if near_zero else 1)  # near zero both ±E are found
     rng = np.random.default_rng(0)
     X = rng.normal(size=(2, 4 * wire.sites, width)).T.copy().view(complex)[..., 0].T
     for _ in range(ITERATIONS):
-        X = np.linalg.qr(solve_banded((DIAGONAL, DIAGONAL), matrix, X))[0]
+        X = np.linalg.qr(solve_banded((BANDS, BANDS), matrix, X))[0]
     waves = X.T.reshape(width, wire.sites, 4)
     if near_zero:
         waves = _of_positive_energy(waves, blocks, hopping(wire))
