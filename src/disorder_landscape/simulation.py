@@ -45,13 +45,18 @@ def read_potential(path: Path, sites: int) -> FloatArray:
         V = read_dataset(path, ["potential"])["potential"].to_numpy()
     else:
         try:
-            V = np.load(path, allow_pickle=False) if path.suffix == ".npy" else _read_text(path)
+            V = _read_npy(path) if path.suffix == ".npy" else _read_text(path)
         except FileNotFoundError:
             raise ArgumentError("potential", must, f"there is no '{path}'") from None
         except (OSError, *NOT_NUMBERS) as error:
             reason = str(error).splitlines()[0]
             raise ArgumentError("potential", must, f"'{path}' is not: {reason}") from None
     return checked_potential(V, sites)
+
+
+def _read_npy(path: Path) -> FloatArray:
+    with open(path, "rb") as file:  # NumPy leaves it open where the header is damaged
+        return np.asarray(np.load(file, allow_pickle=False))
 
 
 def _read_text(path: Path) -> FloatArray:
