@@ -15,6 +15,7 @@
 #include "binding.hpp"
 #include "density.hpp"
 #include "derivatives/gradient.hpp"
+#include "derivatives/thermal_gradient.hpp"
 #include "isolated.hpp"
 #include "processor.hpp"
 #include "spectrum.hpp"
@@ -122,6 +123,23 @@ std::pair<Array, Array> conductance_gradient(Matrix V, Matrix parameters, Vector
     return {by_V, others};
 }
 
+// Of the one wire that there is; slopes are as LeadSelfEnergy, (B, energy, 2) of them.
+nb::tuple thermal_conductance_gradient(Matrix V, Matrix parameters, Vector mu, Vector B, Vector bias, double kT, Vector energies,
+                                       LeadSlopesArray slopes, double spin_orbit_slope, double tolerance, double growth_limit) {
+    std::vector<LeadSelfEnergy> of_leads = lead_self_energies_of(slopes.data(), slopes.size());
+    std::vector<size_t> sets{mu.size(), B.size()};
+    Array error = new_array(sets), solved = new_array(sets), gradient_error = new_array(sets);
+    Array by_V = new_array({mu.size(), B.size(), bias.size(), 4, V.shape(1)});
+    Array others = new_array({mu.size(), B.size(), bias.size(), 4, CHANGES});
+    Array G = on_grid(V, parameters, mu, B, bias, 0.0, {mu.size(), B.size(), bias.size(), 4},
+                      [&](const Grid& grid, double* out, Stop& stop) {
+                          ThermalGradientGrid at{grid, kT, energies.data(), of_leads.data(), spin_orbit_slope};
+                          thermal_gradient(at, tolerance, growth_limit, out, error.data(), solved.data(),
+                                           {by_V.data(), others.data()}, gradient_error.data(), stop);
+                      });
+    return nb::make_tuple(G, error, solved, by_V, others, gradient_error);
+}
+
 ComplexArray ends_of_isolated(Matrix V, Matrix parameters, Vector mu, Vector B, Vector x, Vector y, double theta) {
     return on_grid<Amplitude>(V, parameters, mu, B, x, theta, {V.shape(0), B.size(), mu.size(), x.size(), 8, 8},
                               [&](const Grid& grid, Amplitude* out, Stop& stop) {
@@ -207,6 +225,9 @@ NB_MODULE(CORE_MODULE, m) {
     m.def("conductance_gradient", &conductance_gradient, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"), nb::arg("B"),
           nb::arg("omega"), nb::arg("biases"), nb::arg("bias_count"), nb::arg("slopes"), nb::arg("spin_orbit_slope"),
           nb::arg("growth_limit"));
+    m.def("thermal_conductance_gradient", &thermal_conductance_gradient, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"),
+          nb::arg("B"), nb::arg("bias"), nb::arg("kT"), nb::arg("energies"), nb::arg("slopes"), nb::arg("spin_orbit_slope"),
+          nb::arg("tolerance"), nb::arg("growth_limit"));
     m.def("isolated_ends", &ends_of_isolated, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"),
           nb::arg("B"), nb::arg("x"), nb::arg("y"), nb::arg("theta"));
     m.def("levels", &levels_of, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"), nb::arg("B"), nb::arg("count"),

@@ -51,6 +51,20 @@ struct TiltedLaneLeads {
     }
 };
 
+template <class R> CORE_INLINE Complex<R> entry(const LaneLeads<R>& leads, int c, int i, int j) { return leads.of[c][i + j]; }
+template <class R> CORE_INLINE Complex<R> entry(const TiltedLaneLeads<R>& leads, int c, int i, int j) { return leads.of[c][i][j]; }
+
+// Take the self-energy of the lead on the left end (0) or the right one (1) off a block of its site.
+template <class Block, class Leads>
+inline void attach_lead(Block& D, const Leads& leads, int end) {
+    for (int charge = 0; charge < 2; ++charge)
+        for (int i = 0; i < 2; ++i)
+            for (int j = 0; j <= (Block::MIRRORED ? i : 1); ++j) {
+                auto& at = D(2 * charge + i, 2 * charge + j);
+                at = at - entry(leads, 2 * end + charge, i, j);
+            }
+}
+
 template <class R> CORE_INLINE Complex<R> to_complex(R x) { return {x, R(0.0)}; }
 template <class R> CORE_INLINE Complex<R> to_complex(Complex<R> x) { return x; }
 

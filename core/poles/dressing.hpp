@@ -12,6 +12,7 @@
 
 #include "../leads/self_energy.hpp"
 #include "../wire/pivoted.hpp"
+#include "chiral.hpp"
 #include "far.hpp"
 
 namespace core {

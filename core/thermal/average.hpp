@@ -12,6 +12,28 @@ namespace core {
 constexpr double ROUGHNESS = 10.0;  // estimated error over the smooth part's largest mismatch at the checks
 constexpr double SAFETY = 300.0;    // estimated error over the model's largest mismatch, times t', at the checks
 
+// What all conductances at real energies are made of: poles, and what is left of their values at the nodes, at ω, then
+// at −ω.
+struct RationalConductances {
+    PoleTerms poles{0};
+    std::vector<double> rest[4];
+
+    // Write the averages at one temperature, shape (bias, 4); weights are those of the plan, (bias, 2·node).
+    void average(const std::vector<std::vector<double>>& weights, const std::vector<double>& bias, double kT, double* out) const {
+        for (size_t v = 0; v < bias.size(); ++v)
+            for (int c = 0; c < 4; ++c) out[4 * v + c] = dot(weights[v].data(), rest[c].data(), int(rest[c].size()));
+        average_poles(poles, bias, kT, out);
+    }
+};
+
+// What is known of a set once it is averaged, if it is asked for.
+struct SetModel {
+    int nodes = 0;  // 0: none
+    LevelList levels;
+    Resonances poles{{}, {0, 0}, {}};  // without their vectors
+    RationalConductances conductances;
+};
+
 // The solver's data of one set.
 struct SetData {
     std::vector<NodeData> isolated;           // (node,)
@@ -20,6 +42,24 @@ struct SetData {
     double sought[SOUGHT];                    // the set's own checks in meV
     double growth;
 };
+
+// G of the ends at the energies of a batch, leads attached, chiral basis, in 1/meV; of the conjugate leads G(z*)*.
+inline Symmetric8<PoleComplex> dressed_green(const Cubic& inverse, Batch& b) {
+    b.factor_at_energies(inverse);
+    Ends8 f[8], same_end[8];
+    for (int j = 0; j < 8; ++j) {
+        Ends8 unit;
+        unit.fill(PoleComplex(0.0));
+        unit[j] = PoleComplex(1.0);
+        b.S.multiply(unit, f[j]);
+        same_end[j] = f[j];
+        b.M.solve_lower(f[j]);
+    }
+    Symmetric8<PoleComplex> G;
+    for (int i = 0; i < 8; ++i)
+        for (int j = i; j < 8; ++j) G(i, j) = b.M.add_product(f[i], f[j], -same_end[j][i]);
+    return G;
+}
 
 namespace detail {
 
@@ -43,22 +83,12 @@ inline double mismatch(const double (&checks)[COMPARED], const double (&shares)[
     for (int first = 0; first < COMPARED; first += POLES) {
         b.z = PoleComplex(0.0);
         for (int l = 0; l < POLES; ++l) Batch::set(b.z, l, checks[std::min(first + l, COMPARED - 1)]);
-        b.factor_at_energies(leads.inverse);
-        Ends8 f[8], same_end[8];
-        for (int j = 0; j < 8; ++j) {
-            Ends8 unit;
-            unit.fill(PoleComplex(0.0));
-            unit[j] = PoleComplex(1.0);
-            b.S.multiply(unit, f[j]);
-            same_end[j] = f[j];
-            b.M.solve_lower(f[j]);
-        }
+        const auto G = dressed_green(leads.inverse, b);
         for (int i = 0; i < 8; ++i)
             for (int j = i; j < 8; ++j) {
-                PoleComplex G = b.M.add_product(f[i], f[j], -same_end[j][i]);
                 for (int l = 0; l < POLES && first + l < COMPARED; ++l) {
                     Complex<double> exact = data.green[first + l](i, j);
-                    double re = G.re[l] - exact.re, im = G.im[l] - exact.im, share = shares[first + l];
+                    double re = G(i, j).re[l] - exact.re, im = G(i, j).im[l] - exact.im, share = shares[first + l];
                     worst = largest(worst, (re * re + im * im) * (share * share));
                 }
             }
@@ -68,21 +98,23 @@ inline double mismatch(const double (&checks)[COMPARED], const double (&shares)[
 
 }  // namespace detail
 
-// Write the thermal conductances of one set, shape (bias, 4); return the error estimate in e²/h.
+// Write the thermal conductances of one set, shape (bias, 4), and its model, if asked for; return the error estimate in
+// e²/h.
 inline double rational_average(const EnergyPlan& plan, double hop, const LevelList& list, const SetData& data,
-                               const Leads& leads, double* out) {
+                               const Leads& leads, double* out, SetModel* model = nullptr) {
     int m = plan.nodes, pick = plan.picks[1];
     Levels levels(list, plan.window);
     Batch batch(levels);
     Starts starts = start_poles(plan.omega[pick], data.isolated[pick].G, plan.window, hop, levels, leads);
     Resonances found = find_poles(starts, levels, leads, batch);
     if (!found.whole) return INFINITY;
-    PoleTerms terms = conductance_terms(found, leads, batch);
+    RationalConductances of{conductance_terms(found, leads, batch), {}};
+    const PoleTerms& terms = of.poles;
 
     double checks[COMPARED];
     for (int k = 0; k < COMPARED; ++k) checks[k] = k < CHECKS ? plan.omega[m + k] : data.sought[k - CHECKS];
-    // Of each conductance what the poles leave at the nodes, and at the checks: at ω, then at −ω.
-    std::vector<double> at_nodes[4];
+    // What the poles leave of each conductance at the nodes, and at the checks: at ω, then at −ω.
+    auto& at_nodes = of.rest;
     for (auto& values : at_nodes) values.resize(padded(2 * m), 0.0);
     double at_checks[4][2 * COMPARED];
     auto rest = [&](int count, auto omega, auto bare, auto set) {
@@ -105,9 +137,7 @@ inline double rational_average(const EnergyPlan& plan, double hop, const LevelLi
     auto polynomial = [&](const std::vector<double>& weights, int c) {
         return dot(weights.data(), at_nodes[c].data(), padded(2 * m));
     };
-    for (int v = 0; v < plan.biases; ++v)
-        for (int c = 0; c < 4; ++c) out[4 * v + c] = polynomial(plan.weights[v], c);
-    average_poles(terms, plan.bias, plan.kT, out);
+    of.average(plan.weights, plan.bias, plan.kT, out);
 
     double shares[COMPARED], rough = 0.0;
     for (int k = 0; k < COMPARED; ++k) shares[k] = detail::share_that_counts(checks[k], plan.kT, terms);
@@ -122,6 +152,7 @@ inline double rational_average(const EnergyPlan& plan, double hop, const LevelLi
             for (int c = 0; c < 4; ++c)
                 rough = detail::largest(rough, std::abs(polynomial(weights, c) - at_checks[c][sign * COMPARED + k]) * share);
         }
+    if (model != nullptr) *model = {m, list, {std::move(found.poles), {0, 0}, std::move(found.order), found.paired, true}, std::move(of)};
     return detail::largest(of_model, ROUGHNESS * rough);
 }
 

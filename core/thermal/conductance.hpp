@@ -35,6 +35,22 @@ constexpr int SLOPE_LANES = REGISTER;
 using SlopeReal = Lanes<SLOPE_LANES>;
 using CheckReal = Lanes<REAL_LANES>;
 
+// The leads around the window, from Σ/t' at four energies of which `cubic` inverts the Vandermonde matrix.
+template <class At>
+inline Leads leads_through(const double (&cubic)[CUBIC][CUBIC], double hop, At sigma_at) {
+    EndMatrix at[CUBIC];
+    for (int k = 0; k < CUBIC; ++k) {
+        EndMatrix sigma = on_the_ends(sigma_at(k));
+        Symmetric8<Complex<double>> M;
+        for (int i = 0; i < 8; ++i)
+            for (int j = i; j < 8; ++j) M(i, j) = {sigma(i, j).real() * hop, sigma(i, j).imag() * hop};
+        to_chiral(M);
+        for (int i = 0; i < 8; ++i)
+            for (int j = 0; j < 8; ++j) at[k](i, j) = {M(i, j).re, M(i, j).im};
+    }
+    return Leads(cubic, at);
+}
+
 // One wire and field at the plan's energies.
 struct ThermalField {
     const Wire& of;
@@ -50,17 +66,7 @@ struct ThermalField {
     double kinetic(double mu) const { return (2 * of.hopping - mu) / hop; }
 
     Leads around_the_window(const EnergyPlan& plan) const {
-        EndMatrix at[CUBIC];
-        for (int k = 0; k < CUBIC; ++k) {
-            EndMatrix sigma = on_the_ends(leads[plan.picks[k]]);
-            Symmetric8<Complex<double>> M;
-            for (int i = 0; i < 8; ++i)
-                for (int j = i; j < 8; ++j) M(i, j) = {sigma(i, j).real() * hop, sigma(i, j).imag() * hop};
-            to_chiral(M);
-            for (int i = 0; i < 8; ++i)
-                for (int j = 0; j < 8; ++j) at[k](i, j) = {M(i, j).re, M(i, j).im};
-        }
-        return Leads(plan.cubic, at);
+        return leads_through(plan.cubic, hop, [&](int k) { return leads[plan.picks[k]]; });
     }
 };
 
@@ -144,9 +150,10 @@ inline void solve_checks(const ThermalField& field, const EnergyPlan& plan, cons
     }
 }
 
-// Average up to SETS sets into out (wire, mu, B, bias, 4) and estimate (wire, mu, B).
+// Average up to SETS sets into out (wire, mu, B, bias, 4), estimate (wire, mu, B) and, unless null, models, of the same
+// shape.
 inline void average_sets(const Grid& grid, const EnergyPlan& plan, const SetIndex* sets, int count, double growth_limit,
-                         double* out, double* estimate) {
+                         double* out, double* estimate, SetModel* models) {
     static thread_local std::vector<SetData> room(SETS);
     std::span<SetData> data(room.data(), count);
     for (SetData& of : data) of.isolated.resize(plan.nodes), of.bare.resize(plan.nodes + COMPARED), of.growth = 0.0;
@@ -173,7 +180,8 @@ inline void average_sets(const Grid& grid, const EnergyPlan& plan, const SetInde
             size_t at = (size_t(sets[i].wire) * grid.mu_count + sets[i].mu) * grid.B_count + sets[i].field;
             estimate[at] = INFINITY;
             if (!levels[i].empty() && data[i].growth < growth_limit)
-                estimate[at] = rational_average(plan, field.hop, levels[i], data[i], leads, out + at * plan.biases * 4);
+                estimate[at] = rational_average(plan, field.hop, levels[i], data[i], leads, out + at * plan.biases * 4,
+                                                models == nullptr ? nullptr : models + at);
         }
     }
 }
@@ -181,12 +189,13 @@ inline void average_sets(const Grid& grid, const EnergyPlan& plan, const SetInde
 }  // namespace detail
 
 // Fill G, shape (wire, mu, B, bias, 4), its estimated error and how many energies each set took, (wire, mu, B).
-// grid.omega holds the biases.
+// grid.omega holds the biases.  Where `models` is given, it is filled with the models that G is from.
 inline void thermal_conductance(const Grid& grid, double kT, double tolerance, double growth_limit, double* G, double* error,
-                                double* energies, Stop& stop) {
+                                double* energies, Stop& stop, std::vector<SetModel>* models = nullptr) {
     size_t total = size_t(grid.wire_count) * grid.mu_count * grid.B_count, values = size_t(grid.omega_count) * 4;
     std::fill(G, G + total * values, 0.0), std::fill(error, error + total, INFINITY), std::fill(energies, energies + total, 0.0);
     std::vector<std::vector<double>> earlier;
+    if (models != nullptr) models->clear(), models->resize(total);
     auto place = [&](const SetIndex& s) { return (size_t(s.wire) * grid.mu_count + s.mu) * grid.B_count + s.field; };
     for (int nodes : NODES) {
         int sites = grid.wires->sites;
@@ -199,9 +208,11 @@ inline void thermal_conductance(const Grid& grid, double kT, double tolerance, d
         if (sets.empty()) return;
         EnergyPlan plan(grid.omega, grid.omega_count, kT, nodes);
         std::vector<double> found(total * values, NAN), estimate(total, INFINITY);
+        std::vector<SetModel> tried(models == nullptr ? 0 : total);
         in_parallel(int((sets.size() + SETS - 1) / SETS), stop, [&](int task) {
             int first = task * SETS, count = std::min(SETS, int(sets.size()) - first);
-            detail::average_sets(grid, plan, &sets[first], count, growth_limit, found.data(), estimate.data());
+            detail::average_sets(grid, plan, &sets[first], count, growth_limit, found.data(), estimate.data(),
+                                 models == nullptr ? nullptr : tried.data());
         });
         if (stop.asked()) return;
         for (const SetIndex& set : sets) {
@@ -223,6 +234,7 @@ inline void thermal_conductance(const Grid& grid, double kT, double tolerance, d
             if (estimate[at] < error[at]) {
                 error[at] = estimate[at];
                 std::copy(now, now + values, G + at * values);
+                if (models != nullptr) (*models)[at] = std::move(tried[at]);
             }
         }
         earlier.push_back(std::move(found));

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "../poles/rows.hpp"
-#include "../values/vandermonde.hpp"
+#include "../leads/continued.hpp"
 
 namespace core {
 
@@ -21,7 +21,6 @@ constexpr int COMPARED = CHECKS + SOUGHT;
 constexpr double LOWEST = 0.2;
 // The nodes span this many kT beyond the largest |V|, where 2e-5 of the kernel is cut.
 constexpr double REACH = 11.0;
-constexpr int CUBIC = 4;    // nodes, and coefficients, of the cubic for Σ(ω)
 
 namespace detail {
 
@@ -117,14 +116,17 @@ struct EnergyPlan {
         double picked[CUBIC];
         for (int k = 0; k < CUBIC; ++k) picks[k] = int((k + 0.5) * nodes / CUBIC), picked[k] = omega[picks[k]];
         invert_vandermonde(picked, cubic);
-        static const detail::ThermalKernel kernel;
-        for (double v : bias) {
-            std::vector<double> u;
-            for (double x : kernel.x) u.push_back(std::clamp((v + kT * x) / window, -1.0, 1.0));
-            weights.push_back(detail::interpolated(u, kernel.share, nodes));
-        }
+        for (double v : bias) weights.push_back(averaging_weights(v, kT));
         for (int sign : {1, -1})
             for (int k = 0; k < CHECKS; ++k) at_checks.push_back(detail::interpolated({sign * omega[nodes + k] / window}, {1.0}, nodes));
+    }
+
+    // The weights of the smooth part's values at ω_k, then −ω_k, in its average at a bias and a temperature.
+    std::vector<double> averaging_weights(double v, double at_kT) const {
+        static const detail::ThermalKernel kernel;
+        std::vector<double> u;
+        for (double x : kernel.x) u.push_back(std::clamp((v + at_kT * x) / window, -1.0, 1.0));
+        return detail::interpolated(u, kernel.share, nodes);
     }
 
     // The weights of the smooth part's values at the nodes for that at any ω but a node: the barycentric

@@ -29,6 +29,7 @@ struct PoleTerms {
         std::fill(y, y + padded(count), -1.0);
     }
     PoleTerms(PoleTerms&&) = default;  // the numbers stay where they are
+    PoleTerms& operator=(PoleTerms&&) = default;
 };
 
 namespace detail {

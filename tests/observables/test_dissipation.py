@@ -56,6 +56,6 @@ def test_what_needs_every_particle_says_so():
     with pytest.raises(ArgumentError, match="no dissipation for T_IV"):
         topological_visibility(wire, *POINT)
     with pytest.raises(ArgumentError, match="no dissipation for slopes"):
-        conductance_gradient(wire, *POINT)
+        conductance_gradient(wire, *POINT, temperature=0)
     with pytest.raises(ArgumentError, match="dissipation"):
         lossy(wire, -1e-3)

@@ -21,7 +21,7 @@ EVERYTHING = """
 started = time.process_time()
 wire = dl.Nanowire(np.zeros(20), lead_mu=20)
 dl.topological_visibility(wire, 0.1, [0.1, 0.3], barrier=False)
-dl.conductance_gradient(wire, [0, 1], 0, np.linspace(-0.1, 0.1, 5)[::2])
+dl.conductance_gradient(wire, [0, 1], 0, np.linspace(-0.1, 0.1, 5)[::2], temperature=0)
 dl.conductance(wire, 0, 1, 0.11, temperature=1)
 dl.conductance([wire] * 2, [0, 0.1], [0, 0.3], 0.0, theta=0.4)
 dl.topological_visibility(wire, 0.1, [0.1, 0.3], theta=0.4)

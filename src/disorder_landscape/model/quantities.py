@@ -21,6 +21,7 @@ QUANTITIES = {
     "G_LR": ("nonlocal conductance -dI_L/dV_R", "e^2/h"),
     "G_RL": ("nonlocal conductance -dI_R/dV_L", "e^2/h"),
     "error": ("estimated error of the conductances", "e^2/h"),
+    "gradient_error": ("estimated error of the derivatives, a share of the largest", "1"),
     "energies": ("energies that the solver was asked for", "1"),
     "energy": ("energy from the Fermi level", "meV"),
     "mode": ("number of the mode, from the lowest level on", "1"),

@@ -58,6 +58,19 @@ def conductance_gradient(
     spin_orbit_slope: float,
     growth_limit: float,
 ) -> tuple[FloatArray, FloatArray]: ...
+def thermal_conductance_gradient(
+    V: FloatArray,
+    parameters: FloatArray,
+    mu: FloatArray,
+    B: FloatArray,
+    bias: FloatArray,
+    kT: float,
+    energies: FloatArray,
+    slopes: NDArray[np.complex128],
+    spin_orbit_slope: float,
+    tolerance: float,
+    growth_limit: float,
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]: ...
 def isolated_ends(
     V: FloatArray,
     parameters: FloatArray,

@@ -10,7 +10,7 @@ import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from importlib import import_module
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +35,7 @@ __all__ = [
     "local_green",
     "reflection_determinant",
     "thermal_conductance",
+    "thermal_gradient",
     "threads_at_work",
 ]
 
@@ -209,7 +210,8 @@ def conductance_gradient(
     biases : array, shape (omega, 2)
         Which bias +ω and −ω are, −1 if none.
     lead_slopes : array, shape (B, omega, 2, lead, charge, 2, 2)
-        What `lead_slopes.rotated_lead_slopes` returns.
+        With respect to B and α: what `lead_slopes.rotated_lead_slopes` returns, the first times
+        the leads' V_Z/B.
     growth_limit : float
 
     Returns
@@ -231,6 +233,58 @@ def conductance_gradient(
         growth_limit,
     )
     return by_V, others
+
+
+class ThermalGradient(NamedTuple):
+    """What `thermal_gradient` returns."""
+
+    conductance: FloatArray
+    """Shape (mu, B, bias, 4): G_LL, G_RR, G_LR, G_RL in e²/h."""
+    error: FloatArray
+    """Estimated error of the largest of them, shape (mu, B), in e²/h."""
+    energies: NDArray[np.int64]
+    """Energies solved for them, shape (mu, B)."""
+    by_V: FloatArray
+    """Derivatives by every site's V, shape (mu, B, bias, 4, site), in e²/h per meV."""
+    others: FloatArray
+    """Derivatives by what core/derivatives/shifted_averages.hpp lists, (mu, B, bias, 4, 9)."""
+    difference: FloatArray
+    """How far two ways to the derivative by the bias are apart, (mu, B), in e²/h per kT;
+    infinite, and the derivatives NaN, where there is no model."""
+
+
+def thermal_gradient(
+    wire: Nanowire,
+    mu: FloatArray,
+    B: FloatArray,
+    bias: FloatArray,
+    temperature: float,
+    energies: FloatArray,
+    lead_slopes: NDArray[np.complex128],
+) -> ThermalGradient:
+    """Return thermal averages and their derivatives, of a window as for `thermal_conductance`.
+
+    Parameters
+    ----------
+    energies : array, shape (4,)
+        In meV, within the window.
+    lead_slopes : array, shape (B, energy, 2, lead, charge, 2, 2)
+        What `lead_slopes.rotated_lead_slopes` returns for them.
+    """
+    kT = BOLTZMANN * temperature
+    G, error, solved, by_V, others, difference = core.thermal_conductance_gradient(
+        *handed_over([wire]),
+        mu,
+        B,
+        bias,
+        kT,
+        energies,
+        lead_slopes,
+        1 / (2 * wire.lattice),
+        core.TOLERANCE,
+        GROWTH_LIMIT,
+    )
+    return ThermalGradient(G, error, solved.astype(np.int64), by_V, others, difference)
 
 
 def isolated_ends(

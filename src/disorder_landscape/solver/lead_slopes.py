@@ -1,4 +1,4 @@
-"""How the leads' self-energies change with the field and with α."""
+"""How the leads' self-energies change with their Zeeman energy and with α."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from disorder_landscape.solver.compiled import in_rotated_frame, lead_self_energ
 def lead_slopes(
     wire: Nanowire, B: FloatArray, omega: FloatArray, sigma: ComplexArray
 ) -> ComplexArray:
-    """Return the derivatives of the leads' self-energies with respect to B and to the wire's α.
+    """Return the derivatives of the leads' self-energies by their V_Z and by the wire's α.
 
     Σ = h g hᵀ with g = (E − H₀ − Σ)⁻¹, h the hopping towards the wire and H₀ the onsite term of the
     lead, so dΣ − K dΣ Kᵀ = dh g hᵀ + h g dhᵀ + K dH₀ Kᵀ with K = h g: four linear equations.
@@ -30,7 +30,7 @@ def lead_slopes(
     Returns
     -------
     array, shape (B, energy, 2, lead, charge, 2, 2)
-        In meV/T and 1/nm. Zero for α if the leads have their own, `lead_alpha`.
+        Without a unit and in 1/nm. Zero for α if the leads have their own, `lead_alpha`.
     """
     t, s = wire.hopping, wire.lead_spin_orbit_hopping
     ds = 1 / (2 * wire.lattice) if wire.lead_alpha is None else 0.0
@@ -44,10 +44,10 @@ def lead_slopes(
         right = sigma[:, :, 1, charge]
         K = h @ np.linalg.inv(omega[:, None, None] * unit - onsite - right)
         transposed = K.swapaxes(2, 3)
-        by_B = wire.lead_zeeman_per_tesla * K @ sigma_x @ transposed
+        by_zeeman = K @ sigma_x @ transposed
         by_alpha = dh @ transposed + K @ dh.T
         kron = np.einsum("...ij,...kl->...ikjl", K, K).reshape(*shape, 4, 4)
-        sources = np.stack([by_B.reshape(*shape, 4), by_alpha.reshape(*shape, 4)], axis=-1)
+        sources = np.stack([by_zeeman.reshape(*shape, 4), by_alpha.reshape(*shape, 4)], axis=-1)
         solved = np.linalg.solve(np.eye(4) - kron, sources).swapaxes(2, 3)
         slopes[:, :, :, 1, charge] = solved.reshape(*shape, 2, 2, 2)
         slopes[:, :, :, 0, charge] = slopes[:, :, :, 1, charge, ::-1, ::-1]  # σx Σ σx, the mirror
@@ -63,7 +63,7 @@ def rotated_lead_slopes(wire: Nanowire, B: FloatArray, omega: FloatArray) -> Com
     Returns
     -------
     array, shape (B, omega, 2, lead, charge, 2, 2)
-        With respect to B and α, in 1/T and 1/(meV nm).
+        With respect to the leads' V_Z and to α, in 1/meV and 1/(meV nm).
     """
     t, s, ds = wire.hopping, wire.spin_orbit_hopping, 1 / (2 * wire.lattice)
     hop, end = wire.rotated_hopping, wire.sites - 1

@@ -157,9 +157,7 @@ def _average(
     theta: float,
 ) -> ThermalConductance:
     """Return the average of wires whose gap does not depend on the field."""
-    window = abs(bias).max() + compiled.core.REACH * BOLTZMANN * temperature
-    dissipative = any(w.dissipation > 0 for w in wires)
-    if dissipative or window > BELOW_GAP * min(w.delta0 for w in wires):
+    if not closed_form_reaches(wires, bias, temperature):
         return thermal_quadrature(wires, mu, B, bias, temperature, theta=theta)
     G, error, energies = closed_form(wires, mu, B, bias, temperature, theta)
     for w, m, f in np.argwhere(~(error <= compiled.core.TOLERANCE)):
@@ -168,6 +166,19 @@ def _average(
         G[w, m, f], error[w, m, f] = one.conductance[0, 0, 0], one.error[0, 0, 0]
         energies[w, m, f] += one.energies[0, 0, 0]
     return ThermalConductance(G, error, energies)
+
+
+def thermal_window(bias: FloatArray, temperature: float) -> float:
+    """Return up to which energy in meV the core's closed form looks."""
+    return float(abs(bias).max() + compiled.core.REACH * BOLTZMANN * temperature)
+
+
+def closed_form_reaches(wires: Sequence[Nanowire], bias: FloatArray, temperature: float) -> bool:
+    """Return whether the window stays below the gap of wires that all lack dissipation."""
+    lossless = all(w.dissipation == 0 for w in wires)
+    return lossless and thermal_window(bias, temperature) <= BELOW_GAP * min(
+        w.delta0 for w in wires
+    )
 
 
 def closed_form(

@@ -1,0 +1,158 @@
+// Where the thermal average of a derivative is summed: on a line above the real axis, and at poles.
+//
+// With Ḡ(z) = G(z*)*, probabilities are p_ab = Tr[Γ_a G_ab Γ_b Ḡ_ba] on the real axis, and a change of the wire alone
+// makes them change by −2 Re of
+//
+//     Tr[∂M Q_ab],   Q_ab = G_·b m G_a·,   m = Γ_b Ḡ_ba Γ_a.
+//
+// Above the real axis G is analytic, Ḡ has simple poles at z_k* with the residues v̄v̄ᵀ, z_k and v the poles and vectors
+// of G (resonances.hpp), and the kernel K_V has its own at V + iπkT.  So the integral of any such f is
+//
+//     ∫ f dω = h Σ_j f(x_j + ia) + Σ_k 2πi Res_k f / (1 + exp(−2πi(z_k* − ia)/h)),   x_j = (j + ½)h,
+//
+// where the last factor is one for poles far below the line and zero for those far above it, and in between takes
+// away what a pole near the line puts into the sum.  What is left is of the order of exp(−2πa/h) from the poles of G
+// and exp(−2π(πkT − a)/h) from those of K.  There are no derivatives of residues, and no differences of poles.
+//
+// At the pole of a narrow level G is as large as 1/width, and the two columns of Q_ab are nearly the same imaginary
+// vector: all but a part width/kT of the residue drops out.  So z_k must be that of the very matrix of which G is the
+// inverse, to a small part of the width, and is found from it (exact_poles.hpp).  Where two
+// poles are equal, the model serves instead: to it its own G, with vvᵀ/(z_k* − z_k), is right, and the matrix has
+// λ⁻¹vvᵀ/(z_k* − z_k) beside the same rest.  λ follows from both at the ends, and multiplies each column of Q_ab.
+//
+// Particle–hole symmetry makes f at −z* that of z with electrons and holes exchanged, so only Re z ≥ 0 is summed.
+#pragma once
+
+#include <numbers>
+
+#include "../thermal/average.hpp"
+
+namespace core {
+
+constexpr double HEIGHT = std::numbers::pi / 2;  // of the line, in kT: half way to the poles of the kernel
+constexpr double STEP = 0.65;                    // along the line, in kT
+constexpr double FURTHER = 2.0;                  // in kT: how far beyond the plan's window the line goes, below the gap
+constexpr double BEYOND = 3.0;                   // poles up to so many steps above the line are seen by it
+constexpr double NARROWEST = 1e-8;               // meV; poles of less width change no conductance and lose all digits
+
+// The line above the real axis.
+struct Line {
+    double height, step;
+    explicit Line(double kT) : height(HEIGHT * kT), step(STEP * kT) {}
+
+    Amplitude at(int j) const { return {(j + 0.5) * step, height}; }
+    Amplitude weight_of_pole(Amplitude z) const {
+        const Amplitude turn(0, 2 * std::numbers::pi);
+        return turn / (1.0 + std::exp(-turn * (z - Amplitude(0, height)) / step));
+    }
+    double end(const EnergyPlan& plan) const { return plan.window + FURTHER * plan.kT; }
+    bool sees(Amplitude z) const { return z.imag() < height + BEYOND * step; }
+};
+
+struct ContourPoint {
+    enum Kind { ON_LINE, POLE_OF_MODEL, POLE_OF_MATRIX };  // which of the two has z* for a pole
+    Kind kind;
+    Amplitude z, weight;
+    bool mirrored;        // whether −z* counts, too
+    EndMatrix conjugate;  // Ḡ of the ends, or its residue, in the frame of the sites, in units of 1/t' and of meV/t'
+    // At a pole:
+    Amplitude pole = 0.0;    // z_k = z*
+    double isolation = 0.0;  // distance to the next one
+    double moved = 0.0;      // distance from the model's
+    EndMatrix own{};         // what the model has for G at z
+    Amplitude y[8] = {};     // Γv̄
+    Amplitude scale = 0.0;   // 1/λ = 1 + scale · yᵀ(G − own)y
+};
+
+namespace detail {
+
+// From the chiral basis to that of the sites: the rows of a matrix of the ends, and all of it.
+inline EndMatrix from_chiral_rows(const EndMatrix& M) {
+    const double half = std::numbers::sqrt2 / 2;
+    EndMatrix found;
+    for (int j = 0; j < 8; ++j)
+        for (int end = 0; end < 2; ++end) {
+            Amplitude a = M(2 * end, j), b = M(2 * end + 1, j), c = M(4 + 2 * end, j), d = M(5 + 2 * end, j);
+            found(4 * end, j) = half * (b + d), found(4 * end + 1, j) = half * (a + c);
+            found(4 * end + 2, j) = half * (a - c), found(4 * end + 3, j) = half * (d - b);
+        }
+    return found;
+}
+inline EndMatrix from_chiral(const EndMatrix& M) {
+    EndMatrix rows = from_chiral_rows(M), turned;
+    for (int i = 0; i < 8; ++i)
+        for (int j = 0; j < 8; ++j) turned(i, j) = rows(j, i);
+    return from_chiral_rows(turned);  // of a symmetric matrix
+}
+
+// One lane in the frame of the sites, in units of 1/t'.
+inline EndMatrix lane_at_sites(const Symmetric8<PoleComplex>& G, int lane, double hop) {
+    EndMatrix one;
+    for (int k = 0; k < 8; ++k)
+        for (int j = 0; j < 8; ++j) one(k, j) = hop * Batch::get(G(k, j), lane);
+    return from_chiral(one);
+}
+
+// How far from pole p the next of those in order, or the mirror image of one, is; zero if one is equal.
+inline double isolation(const Resonances& of, int p) {
+    const Amplitude z = of.poles[p].z;
+    double nearest = std::abs(z.real()) > CENTRAL ? 2 * z.real() : INFINITY;
+    for (int k : of.order)
+        if (k != p) nearest = std::min({nearest, std::abs(z - of.poles[k].z), std::abs(z + std::conj(of.poles[k].z))});
+    return nearest > -EQUAL * z.imag() ? nearest : 0.0;
+}
+
+// A pole's point; own is the model's G there.
+inline ContourPoint point_of_pole(const Pole& pole, const EndMatrix& own, const Line& line, const Leads& leads, double hop) {
+    const Amplitude z = std::conj(pole.z);
+    EndMatrix S = leads.inverse.at(pole.z), gamma = leads.gamma.at(z), residue, left{};
+    Amplitude v[8], width = 0.0;
+    for (int k = 0; k < 8; ++k) {
+        v[k] = 0.0;
+        for (int l = 0; l < 8; ++l) v[k] += S(k, l) * pole.t[l];
+        v[k] /= std::sqrt(pole.norm);
+    }
+    for (int k = 0; k < 8; ++k)
+        for (int l = 0; l < 8; ++l) residue(k, l) = hop * std::conj(v[k] * v[l]), left(k, 0) += gamma(k, l) * std::conj(v[l]);
+    for (int k = 0; k < 8; ++k) width += left(k, 0) * v[k];
+    ContourPoint point{ContourPoint::POLE_OF_MODEL, z, line.weight_of_pole(z), true, from_chiral(residue)};
+    point.pole = pole.z, point.own = own;
+    left = from_chiral_rows(left);
+    for (int k = 0; k < 8; ++k) point.y[k] = left(k, 0);
+    point.scale = (z - pole.z) / (width * width * hop);
+    return point;
+}
+
+}  // namespace detail
+
+// The points of one set.
+inline std::vector<ContourPoint> contour(const EnergyPlan& plan, double hop, const Resonances& poles, const Leads& leads, Batch& b) {
+    const Line line(plan.kT);
+    std::vector<ContourPoint> points;
+    std::vector<int> seen;
+    for (int n = 0; n < int(poles.order.size()); ++n) {
+        Amplitude z = std::conj(poles.poles[poles.order[n]].z);
+        if (z.imag() > NARROWEST && line.sees(z) && z.real() < line.end(plan)) seen.push_back(n);
+    }
+    // Call use(k, G at the k-th energy) for so many energies.
+    auto for_green = [&](int count, const Cubic& inverse, auto energy, auto use) {
+        for (int first = 0; first < count; first += POLES) {
+            for (int l = 0; l < POLES; ++l) Batch::set(b.z, l, energy(std::min(first + l, count - 1)));
+            auto G = dressed_green(inverse, b);
+            for (int l = 0; l < POLES && first + l < count; ++l) use(first + l, detail::lane_at_sites(G, l, hop));
+        }
+    };
+    auto pole = [&](int k) -> const Pole& { return poles.poles[poles.order[seen[k]]]; };
+    for_green(int(seen.size()), leads.inverse, [&](int k) { return std::conj(pole(k).z); }, [&](int k, const EndMatrix& G) {
+        points.push_back(detail::point_of_pole(pole(k), G, line, leads, hop));
+        points.back().mirrored = seen[k] < poles.paired;
+        points.back().isolation = detail::isolation(poles, poles.order[seen[k]]);
+    });
+    int count = int(std::ceil(line.end(plan) / line.step));
+    for_green(count, leads.conjugate, [&](int k) { return line.at(k); }, [&](int k, const EndMatrix& G) {
+        points.push_back({ContourPoint::ON_LINE, line.at(k), line.step, true, G});
+    });
+    return points;
+}
+
+}  // namespace core

@@ -1,0 +1,132 @@
+// What points of the contour add to the derivatives of one set: of contour.hpp the sums, of answers.hpp the terms.
+#pragma once
+
+#include "../thermal/kernel.hpp"
+#include "shifted_averages.hpp"
+#include "thermal_field.hpp"
+
+namespace core {
+
+namespace detail {
+
+// Room for the points of one set.
+struct GradientRoom {
+    std::vector<SiteColumns<PointLanes::R>> sites;
+    std::vector<PointLanes::R> by_V;  // (site, bias, conductance)
+    std::vector<PointLanes::R> others;  // (BY_ENERGY + 1, bias, conductance)
+};
+
+// Up to REGISTER points of one set.
+class PointsOfSet {
+    static constexpr int W = REGISTER;
+    using R = PointLanes::R;
+    using C = PointLanes::C;
+
+    const GradientField& field;
+    const ContourPoint* points;
+    int count;
+    GradientRoom& room;
+    PointLanes at;
+    struct Weights {
+        C plus = C(0.0), minus = C(0.0);  // with K_V and K_−V
+    };
+    std::vector<Weights> kernel;  // (bias,), zero where there is no point
+
+    // Re of the weights times the conductances that six probabilities make.
+    static CORE_INLINE void add(const Conductances<C>& G, const Weights& w, double sign_of_minus, R* to) {
+#pragma GCC unroll 4
+        for (int k = 0; k < 4; ++k) {
+            const C &up = G.at[0][k], &down = G.at[1][k];
+            R of_minus = w.minus.re * down.re - w.minus.im * down.im;
+            to[k] = to[k] + w.plus.re * up.re - w.plus.im * up.im + of_minus * sign_of_minus;
+        }
+    }
+    void add_to_others(int change, const C (&of)[PROBABILITIES], double sign_of_minus = 1.0) const {
+        Conductances<C> G = conductances_of(of);
+        for (size_t v = 0; v < kernel.size(); ++v)
+            add(G, kernel[v], sign_of_minus, &room.others[(change * kernel.size() + v) * 4]);
+    }
+
+public:
+    PointsOfSet(const GradientField& field, const EnergyPlan& plan, double mu, const ContourPoint* points, int count, GradientRoom& room)
+        : field(field), points(points), count(count), room(room), at(field, mu, points, count), kernel(plan.biases) {
+        for (int l = 0; l < count; ++l) {
+            const ContourPoint& point = points[l];
+            Amplitude mirrored = point.mirrored ? point.weight : 0.0;
+            for (int v = 0; v < plan.biases; ++v) {
+                PointLanes::set(kernel[v].plus, l, point.weight * thermal_kernel(point.z, plan.bias[v], plan.kT));
+                PointLanes::set(kernel[v].minus, l, mirrored * thermal_kernel(point.z, -plan.bias[v], plan.kT));
+            }
+        }
+    }
+
+    void add() {
+        DriveAt<R> drives[PROBABILITIES];
+        SiteSums<R> sums[PROBABILITIES];
+        auto meet = [&](Ends<R> G) {
+            C square = model_at_poles(G);
+            for (int k = 0; k < PROBABILITIES; ++k) {
+                drives[k].fill(G, at.leads, FROM[k], TO[k]);
+                for (auto& row : drives[k].m)
+                    for (auto& entry : row) entry = entry * square;
+            }
+        };
+        auto use = [&](int n, const Block4<C>& P, const Block4<C>& Q) {
+            C wave[CHANNELS][2][4], tau_z[PROBABILITIES];
+            for (int c = 0; c < 2; ++c)
+                for (int q = 0; q < 2; ++q)
+                    for (int i = 0; i < 4; ++i) wave[c][q][i] = P(i, 2 * c + q), wave[2 + c][q][i] = Q(i, 2 * c + q);
+            for (int k = 0; k < PROBABILITIES; ++k)
+                tau_z[k] = add_site(field.frames[n], drives[k].m, wave[FROM[k]], wave[TO[k]], sums[k]);
+            Conductances<C> G = conductances_of(tau_z);
+            R* to = &room.by_V[size_t(n) * kernel.size() * 4];
+            for (size_t v = 0; v < kernel.size(); ++v) add(G, kernel[v], 1.0, to + 4 * v);
+        };
+        for_all_columns<R>(view(field.wire), at.terms, at.leads.sigma, room.sites, meet, use);
+        add_changes(drives, sums);
+    }
+
+private:
+    // Take the model's G for that of the ends at its poles, and return λ².
+    C model_at_poles(Ends<R>& G) const {
+        C square(1.0);
+        for (int l = 0; l < count; ++l) {
+            const ContourPoint& point = points[l];
+            if (point.kind != ContourPoint::POLE_OF_MODEL) continue;
+            Amplitude over = 1.0;
+            for (int i = 0; i < 8; ++i)
+                for (int j = 0; j < 8; ++j)
+                    over += point.scale * point.y[i] * (Amplitude(G(i, j).re[l], G(i, j).im[l]) - point.own(i, j)) * point.y[j];
+            PointLanes::set(square, l, 1.0 / (over * over));
+            set_ends(G, l, point.own);
+        }
+        return square;
+    }
+
+    void add_changes(const DriveAt<R> (&drives)[PROBABILITIES], const SiteSums<R> (&sums)[PROBABILITIES]) const {
+        C by[BY_ENERGY + 1][PROBABILITIES];
+        double per_meV = 1 / field.hop;
+        auto minus_twice = [](C x) { return -(x + x); };
+        for (int k = 0; k < PROBABILITIES; ++k) {
+            const SiteSums<R>& s = sums[k];
+            const auto& leads_do = drives[k].through_leads;
+            auto pairing = [&](const C(&by)[2]) { return minus_twice(by[0] * s.one + by[1] * s.tau_x); };
+            C onsite = at.terms.normal * s.one + at.terms.anomalous * s.tau_x - at.terms.kinetic * s.tau_z;
+            onsite = onsite - s.weighted - s.along * R(field.zeeman);
+            C turned = s.across * R(2 * field.zeeman * field.angle_slope) + onsite * R(field.hop_slope);
+            by[BY_MU][k] = minus_twice(s.tau_z * R(per_meV));
+            by[BY_ZEEMAN][k] = -minus_twice(s.along * R(per_meV));
+            by[BY_ALPHA][k] = leads_do[LEAD_ALPHA] - minus_twice(turned);
+            by[BY_GAMMA][k] = pairing(at.by_gamma);
+            by[BY_DELTA0][k] = pairing(at.by_delta0);
+            by[BY_LEAD_ZEEMAN][k] = leads_do[LEAD_ZEEMAN];
+            by[BY_ENERGY][k] = leads_do[LEAD_ENERGY] + pairing(at.by_energy);
+        }
+        for (int change = 0; change < BY_ENERGY; ++change) add_to_others(change, by[change]);
+        add_to_others(BY_ENERGY, by[BY_ENERGY], -1.0);  // p(−ω) has the slope of the other sign
+    }
+};
+
+}  // namespace detail
+
+}  // namespace core

@@ -1,0 +1,199 @@
+"""The derivatives of conductances with respect to all that a wire and a measurement are made of.
+
+At T = 0 and at a temperature the compiled core finds them (core/derivatives), at a cost that does
+not depend on how many there are. Where its closed form does not reach, above the gap and with
+dissipation, they are differences of exact averages.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from disorder_landscape.model.parameters import BOHR_MAGNETON, BOLTZMANN, FloatArray, Nanowire
+from disorder_landscape.solver import compiled, routes
+from disorder_landscape.solver.difference_gradient import difference
+from disorder_landscape.solver.lead_slopes import rotated_lead_slopes
+
+AT_ZERO = {
+    "V": "meV",
+    "mu": "meV",
+    "B": "T",
+    "alpha": "meV nm",
+    "barrier_left": "meV",
+    "barrier_right": "meV",
+}
+"""With respect to what there are derivatives at T = 0, and its unit."""
+AT_A_TEMPERATURE = AT_ZERO | {
+    "g": "1",
+    "gamma": "meV",
+    "delta0": "meV",
+    "critical_field": "T",
+    "bias": "meV",
+    "temperature": "K",
+}
+"""The same at a temperature; bias is an offset of all of them."""
+BY_DIFFERENCES = {"dissipation": "meV"}
+"""The same, always found from differences."""
+UNITS = AT_A_TEMPERATURE | BY_DIFFERENCES
+"""All of these."""
+CORE_ORDER = ("mu", "V_Z", "alpha", "gamma", "delta0", "lead_V_Z", "energy", "bias", "kT")
+"""What the core differentiates by, as core/derivatives/shifted_averages.hpp has it."""
+SAFETY = 10.0
+"""Estimated error over the difference of the two ways to the derivative by the bias. Of 318 random
+derivatives the largest error was 9 times the difference, one in a hundred more than 5 times."""
+LEAST = 1e-5
+"""Estimated error that no comparison sees, as a share: of the contour's step and of its ends."""
+
+
+@dataclass(frozen=True)
+class Gradient:
+    """Conductances and their derivatives on a grid of one wire."""
+
+    conductance: FloatArray
+    """Shape (mu, B, bias, 4): G_LL, G_RR, G_LR, G_RL in e²/h."""
+    by: dict[str, FloatArray]
+    """Of each parameter, shape (mu, B, bias, 4), by V with a last axis site."""
+    error: FloatArray
+    """Estimated error of the conductances, shape (mu, B), in e²/h."""
+    energies: NDArray[np.int64]
+    """Energies solved, shape (mu, B)."""
+    gradient_error: FloatArray
+    """Estimated error of the derivatives as a share of the largest by an energy, shape (mu, B)."""
+
+
+def joined(parts: Sequence[Gradient], axis: int) -> Gradient:
+    """Return the gradients of parts of a grid as one, along the axis of μ or of B."""
+
+    def whole(arrays: Iterable[NDArray[Any]]) -> NDArray[Any]:
+        return np.concatenate(list(arrays), axis=axis)
+
+    return Gradient(
+        whole(part.conductance for part in parts),
+        {name: whole(part.by[name] for part in parts) for name in parts[0].by},
+        whole(part.error for part in parts),
+        whole(part.energies for part in parts),
+        whole(part.gradient_error for part in parts),
+    )
+
+
+def at_zero(
+    wire: Nanowire, mu: FloatArray, B: FloatArray, bias: FloatArray, growth_limit: float
+) -> Gradient:
+    """Return the derivatives at T = 0 of a wire without dissipation or critical field."""
+    omega, which = np.unique(abs(bias), return_inverse=True)
+    sign = (bias < 0).astype(int)
+    biases = np.full((omega.size, 2), -1)
+    biases[which, sign] = np.arange(bias.size)
+    slopes = rotated_lead_slopes(wire, B, omega)
+    slopes[:, :, 0] *= wire.lead_zeeman_per_tesla
+    by_V, others = compiled.conductance_gradient(wire, mu, B, omega, biases, slopes, growth_limit)
+    by = {"V": np.moveaxis(by_V, 0, 3)}
+    by |= {name: np.moveaxis(others[:, k], 0, 3) for k, name in enumerate(("mu", "B", "alpha"))}
+    G = compiled.bare_conductance([wire], mu, B, omega)[0][:, :, which, sign]
+    exact = np.zeros((mu.size, B.size))
+    energies = np.full(exact.shape, omega.size)
+    return Gradient(G, _with_barriers(by), exact, energies, exact)
+
+
+def at_a_temperature(
+    wire: Nanowire,
+    mu: FloatArray,
+    B: FloatArray,
+    bias: FloatArray,
+    temperature: float,
+    names: Sequence[str],
+) -> Gradient:
+    """Return the derivatives at a temperature with respect to what is named."""
+    if np.isinf(wire.critical_field):
+        found = _at_one_gap(wire, mu, B, bias, temperature, names)
+    else:
+        each = [_in_field(wire, mu, float(b), bias, temperature, names) for b in B]
+        found = joined(each, axis=1)
+    return replace(found, by={name: found.by[name] for name in names})
+
+
+def _with_barriers(by: dict[str, FloatArray]) -> dict[str, FloatArray]:
+    """Add the derivatives by the barriers, which stand on the end sites."""
+    return by | {"barrier_left": by["V"][..., 0], "barrier_right": by["V"][..., -1]}
+
+
+def _in_field(
+    wire: Nanowire,
+    mu: FloatArray,
+    B: float,
+    bias: FloatArray,
+    temperature: float,
+    names: Sequence[str],
+) -> Gradient:
+    """Return the derivatives of a wire whose gap Δ₀(B) = Δ₀√(1 − (B/B_c)²) depends on the field."""
+    through_gap = {"B", "delta0", "critical_field"}
+    wanted = set(names) | ({"delta0"} if through_gap & set(names) else set())
+    found = _at_one_gap(wire.in_field(B), mu, np.array([B]), bias, temperature, sorted(wanted))
+    if "delta0" not in wanted:
+        return found
+    share = B / wire.critical_field
+    root, by_gap = np.sqrt(1 - share**2), found.by["delta0"]
+    slope = wire.delta0 * share / wire.critical_field / root
+    by = found.by | {"delta0": by_gap * root, "critical_field": by_gap * slope * share}
+    if "B" in by:
+        by["B"] = by["B"] - by_gap * slope
+    return replace(found, by=by)
+
+
+def _at_one_gap(
+    wire: Nanowire,
+    mu: FloatArray,
+    B: FloatArray,
+    bias: FloatArray,
+    temperature: float,
+    names: Sequence[str],
+) -> Gradient:
+    """Return the derivatives of a wire without a critical field."""
+    if routes.closed_form_reaches([wire], bias, temperature):
+        found = _of_the_core(wire, mu, B, bias, temperature)
+        missing = [name for name in names if name in BY_DIFFERENCES]
+    else:
+        average = routes.thermal_average([wire], mu, B, bias, temperature)
+        G, error, energies = (part[0] for part in average)
+        found = Gradient(
+            G, {"critical_field": np.zeros_like(G)}, error, energies, np.zeros(error.shape)
+        )
+        missing = [name for name in names if name != "critical_field"]
+    by, worst = dict(found.by), found.gradient_error
+    for name in missing:
+        by[name], share = difference(wire, mu, B, bias, temperature, name)
+        worst = np.maximum(worst, share)
+    return replace(found, by=by, gradient_error=worst)
+
+
+def _of_the_core(
+    wire: Nanowire, mu: FloatArray, B: FloatArray, bias: FloatArray, temperature: float
+) -> Gradient:
+    """Return the derivatives that the closed form has."""
+    energies = routes.thermal_window(bias, temperature) * np.sin(np.pi * (np.arange(4) + 0.5) / 8)
+    slopes = np.ascontiguousarray(rotated_lead_slopes(wire, B, energies))
+    raw = compiled.thermal_gradient(wire, mu, B, bias, temperature, energies, slopes)
+    of = dict(zip(CORE_ORDER, np.moveaxis(raw.others, -1, 0), strict=True))
+    follows = 1.0 if wire.lead_g is None else 0.0
+    field = B[:, None, None]
+    by = {
+        "V": raw.by_V,
+        "mu": of["mu"],
+        "B": wire.zeeman_per_tesla * of["V_Z"] + wire.lead_zeeman_per_tesla * of["lead_V_Z"],
+        "alpha": of["alpha"],
+        "g": 0.5 * BOHR_MAGNETON * field * (of["V_Z"] + follows * of["lead_V_Z"]),
+        "gamma": of["gamma"],
+        "delta0": of["delta0"],
+        "critical_field": np.zeros_like(of["delta0"]),
+        "bias": of["bias"],
+        "temperature": BOLTZMANN * of["kT"],
+    }
+    by_energies = (by["mu"], by["gamma"], by["delta0"], by["bias"], abs(by["V"]).max(axis=-1))
+    largest = BOLTZMANN * temperature * np.max([abs(of) for of in by_energies], axis=(0, 3, 4))
+    share = SAFETY * raw.difference / np.maximum(largest, np.finfo(float).tiny) + LEAST
+    return Gradient(raw.conductance, _with_barriers(by), raw.error, raw.energies, share)

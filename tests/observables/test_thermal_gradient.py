@@ -1,0 +1,274 @@
+"""The derivatives at a temperature, against differences of the quadrature and each other."""
+
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
+from itertools import pairwise
+from multiprocessing import get_context
+
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+
+from disorder_landscape import ArgumentError, Nanowire, conductance, conductance_gradient
+from disorder_landscape.model.disorder import disorder_realization
+from disorder_landscape.model.quantities import AXES, CONDUCTANCES
+from disorder_landscape.solver.quadrature import thermal_quadrature
+from random_wires import fields, mus, random_wire, seeds
+
+BIAS = np.array([-0.04, -0.01, 0.0, 0.02])
+STEPS = {
+    "mu": 2e-4,
+    "B": 3e-4,
+    "alpha": 4e-3,
+    "g": 1e-2,
+    "gamma": 2e-4,
+    "delta0": 2e-4,
+    "critical_field": 1e-2,
+    "barrier_left": 1e-2,
+    "barrier_right": 1e-2,
+    "bias": 1e-4,
+    "temperature": 5e-4,
+    "V": 4e-4,
+}
+
+
+def averages(wire, mu, B, temperature, bias=BIAS):
+    """By the quadrature, shape (bias, 4)."""
+    point = [wire.in_field(B)], np.array([mu]), np.array([B]), bias, temperature
+    return thermal_quadrature(*point).conductance[0, 0, 0]
+
+
+def changed(name, change, wire, mu, B, temperature, along):
+    at = {"mu": mu, "B": B, "temperature": temperature, "bias": BIAS}
+    if name in at:
+        at[name] = at[name] + change
+    elif name == "V":
+        wire = replace(wire, potential=wire.potential + change * along)
+    elif name.startswith("barrier"):
+        left, right = wire.barrier
+        both = (left + change, right) if name == "barrier_left" else (left, right + change)
+        wire = replace(wire, barrier=both)
+    else:
+        wire = replace(wire, **{name: getattr(wire, name) + change})
+    return averages(wire, **at)
+
+
+def expected(name, *point):
+    """Central differences, extrapolated twice, and an estimate of their error."""
+    steps = STEPS[name] / 2.0 ** np.arange(3)
+    table = [(changed(name, h, *point) - changed(name, -h, *point)) / (2 * h) for h in steps]
+    for order in (1, 2):
+        previous = table
+        table = [(4**order * b - a) / (4**order - 1) for a, b in pairwise(table)]
+    return table[0], abs(table[0] - previous[1]).max() + 1e-8 / steps[-1]
+
+
+def slopes_of(gradient, name):
+    point = gradient.isel(mu=0, B=0)
+    return np.stack([point[f"d{G}_d{name}"] for G in CONDUCTANCES], axis=-1)
+
+
+def assert_right(wire, mu, B, temperature, names, share):
+    along = np.cos(np.pi * 3 * (np.arange(wire.sites) + 0.5) / wire.sites)
+    found = conductance_gradient(wire, mu, B, BIAS, temperature)
+    assert found.gradient_error.item() < share
+    for name in names:
+        ours = slopes_of(found, name)
+        if name == "V":  # (bias, site, conductance)
+            ours = np.einsum("bsc,s->bc", ours, along)
+        slope, error = expected(name, wire, mu, B, temperature, along)
+        assert_allclose(ours, slope, rtol=0, atol=share * abs(slope).max() + 3 * error)
+
+
+@pytest.mark.parametrize("name", STEPS)
+def test_each_derivative_is_that_of_the_quadrature(name):
+    wire = replace(random_wire(3, sites=300), critical_field=2.0)
+    assert_right(wire, 0.3, 0.45, 0.05, [name], share=1e-3)
+
+
+@settings(max_examples=5)
+@given(seeds, mus, fields, st.floats(0.03, 0.06), st.sampled_from(sorted(STEPS)))
+@example(11, 0.0, 0.0, 0.05, "V")
+def test_wires_of_any_kind_have_them(seed, mu, B, temperature, name):
+    rng = np.random.default_rng(seed)
+    wire = replace(
+        random_wire(seed, sites=150),
+        g=rng.uniform(10, 40),
+        gamma=rng.uniform(0.1, 0.2),
+        delta0=rng.uniform(0.13, 0.16),
+        barrier=tuple(rng.uniform(2, 20, 2)),
+        lead_alpha=rng.choice([None, 5.0]),
+        lead_g=rng.choice([None, 10.0]),
+        critical_field=rng.choice([np.inf, 3.0]),
+    )
+    found = conductance_gradient(wire, mu, B, BIAS, temperature)
+    share = max(3e-3, found.gradient_error.item())
+    if share < 0.1:  # else it says so
+        assert_right(wire, mu, B, temperature, [name], share=1.01 * share)
+
+
+def test_levels_that_the_ends_hardly_see_do_no_harm():
+    """Poles of 1e-8 to 1e-6 meV: the model has them at places that are off by more than that."""
+    wire = Nanowire(np.random.default_rng(0).normal(0, 0.2, 300))
+    for B in (0.275, 0.5):
+        found = conductance_gradient(wire, 0.0, B, BIAS)
+        assert found.gradient_error.item() < 1e-2
+        ours, (slope, _) = slopes_of(found, "mu"), expected("mu", wire, 0.0, B, 0.05, None)
+        assert_allclose(ours, slope, rtol=0, atol=1e-3 * abs(slope).max())
+
+
+def test_moving_all_sites_moves_mu():
+    wire = random_wire(5, sites=200)
+    found = conductance_gradient(wire, [0.1, 0.4], [0.2, 0.6], BIAS)
+    for name in CONDUCTANCES:
+        assert_allclose(found[f"d{name}_dV"].sum("site"), -found[f"d{name}_dmu"], atol=1e-9)
+
+
+def test_the_mirror_image_has_the_mirrored_gradient():
+    wire = replace(random_wire(6, sites=200), barrier=(10.0, 20.0))
+    mirrored = replace(wire, potential=wire.potential[::-1], barrier=(20.0, 10.0))
+    ours, theirs = (conductance_gradient(w, 0.2, 0.5, BIAS) for w in (wire, mirrored))
+    for name, other in [("G_LL", "G_RR"), ("G_LR", "G_RL")]:
+        a, b = ours[f"d{name}_dV"], theirs[f"d{other}_dV"][..., ::-1]
+        assert_allclose(a, b, rtol=0, atol=1e-4 * abs(a).max().item())
+        assert_allclose(
+            ours[f"d{name}_dbarrier_left"], theirs[f"d{other}_dbarrier_right"], atol=1e-6
+        )
+
+
+def test_the_grid_gives_what_its_points_give():
+    wire = random_wire(7, sites=100)
+    mu, B = np.linspace(0, 0.6, 9), np.linspace(0.1, 0.7, 8)
+    seen = []
+    whole = conductance_gradient(
+        wire, mu, B, BIAS, progress=lambda done, all_: seen.append((done, all_))
+    )
+    assert sum(done for done, _ in seen) == 72
+    assert {all_ for _, all_ in seen} == {72}
+    point = conductance_gradient(wire, mu[3], B[5], BIAS)
+    for name, values in point.data_vars.items():
+        here = whole[name].isel(mu=[3], B=[5])
+        assert_allclose(here, values, rtol=0, atol=1e-9 * (1 + abs(values).max().item()))
+
+
+def test_both_modes_are_products_with_the_jacobian():
+    wire = random_wire(8, sites=60)
+    grids = np.array([0.1, 0.3]), np.array([0.2, 0.5]), BIAS
+    whole = conductance_gradient(wire, *grids)
+    change = {"V": np.random.default_rng(1).normal(size=60), "g": 0.5, "temperature": 1e-3}
+    along = conductance_gradient(wire, *grids, direction=change)
+    shape = 2, 2, BIAS.size
+    weights = xr.Dataset(
+        {name: (AXES, np.random.default_rng(2).normal(size=shape)) for name in CONDUCTANCES}
+    )
+    of_sum = conductance_gradient(wire, *grids, weights=weights)
+    total = 0.0
+    for name in CONDUCTANCES:
+        by_V = (whole[f"d{name}_dV"] * xr.DataArray(change["V"], dims="site")).sum("site")
+        expected_change = by_V + 0.5 * whole[f"d{name}_dg"] + 1e-3 * whole[f"d{name}_dtemperature"]
+        assert_allclose(along[f"d{name}"], expected_change, atol=1e-12)
+        total += (along[f"d{name}"] * weights[name].to_numpy()).sum().item()
+    dot = of_sum["V"].to_numpy() @ change["V"] + 0.5 * of_sum["g"] + 1e-3 * of_sum["temperature"]
+    assert dot.item() == pytest.approx(total, rel=1e-9)
+    assert of_sum.V.dims == ("site",)
+    assert of_sum.gamma.dims == ()
+
+
+def test_hot_and_lossy_wires_have_differences():
+    """Above the gap, and with dissipation, where the closed form does not reach."""
+    wire = random_wire(9, sites=6)
+    warm = conductance_gradient(wire, 0.2, 0.3, 0.02, 0.2)
+    assert warm.gradient_error.item() < 1e-3
+    lossy = replace(wire, dissipation=0.002)
+    found = conductance_gradient(lossy, 0.2, 0.3, 0.02, 0.05, parameters=["dissipation", "mu"])
+    h = 1e-4
+    for name, other in (
+        ("dissipation", [replace(lossy, dissipation=0.002 + s) for s in (-h, h)]),
+        ("mu", [replace(lossy, potential=lossy.potential - s) for s in (-h, h)]),
+    ):
+        down, up = (conductance(w, 0.2, 0.3, 0.02, 0.05).G_LL.item() for w in other)
+        assert found[f"dG_LL_d{name}"].item() == pytest.approx((up - down) / (2 * h), rel=1e-3)
+    at_rest = conductance_gradient(wire, 0.2, 0.3, 0.02, 0.05, parameters="dissipation")
+    G = [
+        conductance(replace(wire, dissipation=x), 0.2, 0.3, 0.02, 0.05).G_LL.item()
+        for x in (0, 1e-5)
+    ]
+    assert at_rest.dG_LL_ddissipation.item() == pytest.approx((G[1] - G[0]) / 1e-5, rel=1e-2)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        ({"parameters": ["beta"]}, "parameters must be names"),
+        ({"parameters": []}, "there is none"),
+        ({"parameters": ["gamma"], "temperature": 0.0}, "at T = 0"),
+        ({"direction": {"V": 1.0}}, "one number for each site"),
+        ({"direction": {"mu": np.nan}}, "must be a number"),
+        ({"weights": 3.0}, "weights must be a Dataset"),
+        ({"weights": xr.Dataset(), "direction": {"mu": 1.0}}, "not come with a direction"),
+        ({"temperature": -1.0}, "temperature must"),
+        ({"progress": 3}, "progress must"),
+    ],
+)
+def test_bad_input_is_one_sentence(arguments, says):
+    with pytest.raises(ArgumentError, match=says):
+        conductance_gradient(**{"wire": Nanowire(np.zeros(5)), "mu": 0.0, "B": 0.1} | arguments)
+
+
+def test_wires_of_two_sites_have_them():
+    wire = Nanowire(np.array([0.1, -0.2]))
+    assert_right(wire, 0.1, 0.2, 0.05, ["mu", "bias", "gamma"], share=5e-3)
+
+
+def one_case(seed):
+    """Return two derivatives' errors and estimates, as shares of the largest by an energy.
+
+    None where the differences themselves are no better.
+    """
+    rng = np.random.default_rng([77, seed])
+    components = int(rng.choice([3, 5, 10, 10, 30]))
+    wire = Nanowire(
+        disorder_realization(rng, components, 300)[1],
+        alpha=rng.uniform(6.4, 9.6),
+        g=rng.uniform(20, 30),
+        gamma=rng.uniform(0.1, 0.2),
+        delta0=rng.uniform(0.12, 0.14),
+        barrier=tuple(rng.uniform(5, 30, 2)),
+    )
+    T, mu, B = rng.uniform(0.03, 0.065), rng.uniform(0, 0.6), rng.uniform(0, 0.8)
+    along = np.cos(np.pi * rng.integers(1, 12) * (np.arange(300) + 0.5) / 300)
+    found = conductance_gradient(wire, mu, B, BIAS, T)
+    by_energies = ("mu", "gamma", "delta0", "bias", "V")
+    largest = max(abs(slopes_of(found, name)).max() for name in by_energies)
+    shares = []
+    for name in ("V", ("mu", "gamma", "delta0", "bias")[seed % 4]):
+        ours = slopes_of(found, name)
+        if name == "V":
+            ours = np.einsum("bsc,s->bc", ours, along)
+        slope, error = expected(name, wire, mu, B, T, along)
+        wrong = abs(ours - slope).max()
+        resolved = error < 0.3 * wrong + 1e-5 * largest
+        shares.append((wrong / largest, found.gradient_error.item()) if resolved else None)
+    return shares
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("cases", [5000])
+def test_ten_thousand_random_derivatives(cases):
+    """`pytest -m slow -s -k ten_thousand_random_derivatives`: half an hour on two cores."""
+    with ProcessPoolExecutor(2, get_context("spawn")) as pool:
+        each = [pair for pairs in pool.map(one_case, range(cases), chunksize=20) for pair in pairs]
+    shares, estimates = np.array([pair for pair in each if pair is not None]).T
+    print(f"\n{shares.size} of {len(each)} that the differences resolve")
+    for percent in (50, 90, 95, 99, 99.9, 100):
+        print(f"{percent:5} % within {np.percentile(shares, percent):.1e}")
+    print(f"within 1e-4: {(shares < 1e-4).mean():.4f}, within 1e-2: {(shares < 1e-2).mean():.5f}")
+    print(f"wrong by more than estimated: {(shares > estimates).sum()}")
+    worst = np.argsort(-shares)[:5]
+    print("worst, and estimated:", [(f"{shares[k]:.1e}", f"{estimates[k]:.1e}") for k in worst])
+    assert (shares < 1e-4).mean() > 0.93
+    assert (shares < 1e-2).mean() > 0.999
+    assert (shares > estimates).mean() < 1e-3
