@@ -19,6 +19,7 @@ from disorder_landscape.parts import MissingPartError, needs
 if TYPE_CHECKING:
     from disorder_landscape.inference.infer import infer
     from disorder_landscape.inference.verify import verify
+    from disorder_landscape.learning.differentiable import differentiable_conductance
     from disorder_landscape.learning.prediction import predict
 
 __all__ = [
@@ -27,6 +28,7 @@ __all__ = [
     "Nanowire",
     "conductance",
     "conductance_gradient",
+    "differentiable_conductance",
     "gap",
     "infer",
     "local_density_of_states",
@@ -43,6 +45,10 @@ def __getattr__(name: str) -> Any:
         with needs("inference"):
             from disorder_landscape.inference.infer import infer
         return infer
+    if name == "differentiable_conductance":
+        with needs("learning"):
+            from disorder_landscape.learning.differentiable import differentiable_conductance
+        return differentiable_conductance
     if name == "predict":
         with needs("learning"):
             from disorder_landscape.learning.prediction import predict
