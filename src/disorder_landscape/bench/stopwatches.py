@@ -59,7 +59,13 @@ def bare(wire: Nanowire, mu: FloatArray, B: FloatArray, omega: FloatArray = ENER
 def gradient(wire: Nanowire, mu: FloatArray, B: FloatArray) -> Stopwatch:
     """Time the derivatives of the bare conductances, per (μ, B, bias)."""
     count = mu.size * B.size * BIASES.size
-    return lambda: _seconds(lambda: conductance_gradient(wire, mu, B, BIASES)) / count
+    return lambda: _seconds(lambda: conductance_gradient(wire, mu, B, BIASES, 0.0)) / count
+
+
+def thermal_gradient(wire: Nanowire, mu: FloatArray, B: FloatArray) -> Stopwatch:
+    """Time all derivatives at the paper's temperature, per (μ, B)."""
+    point = mu, B, BIASES, TEMPERATURE
+    return lambda: _seconds(lambda: conductance_gradient(wire, *point)) / (mu.size * B.size)
 
 
 def energy_grid(wire: Nanowire, mu: FloatArray, B: FloatArray, spacing: float) -> Stopwatch:

@@ -3,9 +3,7 @@
 The width is that of Laplace's approximation. The derivatives are central differences of the thermal
 averages along the principal axes of the present distribution. The differences are half a standard
 deviation to either side. They are no less than is needed for the simulation's own error (of few
-conductances up to 10⁻⁴ e²/h) not to pass for a slope. (`conductance_gradient` has the derivatives
-at zero temperature. These are of peaks far narrower than kT, and an average over them would take
-thousands of energies.)
+conductances up to 10⁻⁴ e²/h) not to pass for a slope.
 """
 
 from __future__ import annotations
