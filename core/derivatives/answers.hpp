@@ -4,7 +4,8 @@
 //
 //     2 Tr[∂Σ Q_ab] + Tr[∂Γ_a G_ab Γ_b Ḡ_ba] + Tr[Γ_a G_ab ∂Γ_b Ḡ_ba],
 //
-// and as Q_ab = G_·b m G_a· is of rank two, Tr[A Q_ab] is the sum over both q of G_aq· A u_q, u = G_·b m.
+// and as Q_ab = G_·b m G_a· is of rank two, Tr[A Q_ab] is the sum over both q of yᵀ A u, y = G_aq· and u = G_·b m; at a
+// pole Q_ab is of rank one.
 #pragma once
 
 #include "columns.hpp"
@@ -23,7 +24,7 @@ struct LeadsAt {
     LaneLeads<R> sigma;
     C gamma[CHANNELS][3];
     C slope[LEAD_CHANGES][CHANNELS][3], gamma_slope[LEAD_CHANGES][CHANNELS][3];
-    C conjugate[8][8];
+    C conjugate[8][8], v[8];  // v of poles alone
 
     static void set(C& x, int lane, Amplitude value) { x.re.set(lane, value.real()), x.im.set(lane, value.imag()); }
 
@@ -38,6 +39,7 @@ struct LeadsAt {
             }
         for (int i = 0; i < 8; ++i)
             for (int j = 0; j < 8; ++j) set(conjugate[i][j], lane, at.conjugate(i, j));
+        for (int i = 0; i < 8; ++i) set(v[i], lane, at.v[i]);
     }
 };
 
@@ -84,32 +86,29 @@ struct DriveAt {
     }
 };
 
-// What of Tr[A Q_ab] is summed over the sites, for the forms A that a change of the wire is made of.
+// What of Tr[A Q_ab] is summed over the sites, for the forms A that a change of the wire is made of, but for τz, of which
+// each site's is kept.
 template <class R>
 struct SiteSums {
     using C = Complex<R>;
-    C one, tau_x, along, across, tau_z, weighted;  // the last three times n, 1 and V_n
+    C one, tau_x, along, across;  // the last times n
 
-    SiteSums() : one(0.0), tau_x(0.0), along(0.0), across(0.0), tau_z(0.0), weighted(0.0) {}
+    SiteSums() : one(0.0), tau_x(0.0), along(0.0), across(0.0) {}
 };
 
-// Where a site's field points, and what its V is, in units of t'.
+// Where the field of site n points, and n times that; the sign that τx has in the frame.
 struct SiteFrame {
-    double cosine, sine, n, V, parity;
+    double cosine, sine, n_cosine, n_sine, parity;
 };
 
-// Add a site's part to the sums, and return its Tr[τz Q_ab].
-template <class R>
-CORE_INLINE Complex<R> add_site(const SiteFrame& at, const Complex<R> (&m)[2][2], const Complex<R> (&from)[2][4],
-                                const Complex<R> (&to)[2][4], SiteSums<R>& sums) {
+// Add a site's part to the sums, and return its Tr[τz Q_ab], Q_ab the sum of u yᵀ over RANK vectors.
+template <int RANK, class R>
+CORE_INLINE Complex<R> add_site(const SiteFrame& at, const Complex<R> (&us)[RANK][4], const Complex<R> (&ys)[RANK][4], SiteSums<R>& sums) {
     using C = Complex<R>;
     C own[4], flip, pair;
 #pragma GCC unroll 2
-    for (int q = 0; q < 2; ++q) {
-        C u[4];
-#pragma GCC unroll 4
-        for (int i = 0; i < 4; ++i) u[i] = to[0][i] * m[0][q] + to[1][i] * m[1][q];
-        const C(&y)[4] = from[q];
+    for (int q = 0; q < RANK; ++q) {
+        const C(&u)[4] = us[q], (&y)[4] = ys[q];
         if (q == 0) {
 #pragma GCC unroll 4
             for (int i = 0; i < 4; ++i) own[i] = u[i] * y[i];
@@ -123,16 +122,11 @@ CORE_INLINE Complex<R> add_site(const SiteFrame& at, const Complex<R> (&m)[2][2]
         }
     }
     C electrons = own[0] + own[1], holes = own[2] + own[3], along_z = (own[0] - own[1]) + (own[2] - own[3]);
-    C tau_z = electrons - holes;
-    R cosine = at.cosine, sine = at.sine;
-    C across = along_z * cosine - flip * sine;
     sums.one = sums.one + electrons + holes;
     sums.tau_x = sums.tau_x + pair * R(at.parity);
-    sums.along = sums.along + flip * cosine + along_z * sine;
-    sums.across = sums.across + across * R(at.n);
-    sums.tau_z = sums.tau_z + tau_z;
-    sums.weighted = sums.weighted + tau_z * R(at.V);
-    return tau_z;
+    sums.along = sums.along + flip * R(at.cosine) + along_z * R(at.sine);
+    sums.across = sums.across + along_z * R(at.n_cosine) - flip * R(at.n_sine);
+    return electrons - holes;
 }
 
 }  // namespace core

@@ -30,8 +30,8 @@
 namespace core {
 
 constexpr double HEIGHT = std::numbers::pi / 2;  // of the line, in kT: half way to the poles of the kernel
-constexpr double STEP = 0.65;                    // along the line, in kT
-constexpr double FURTHER = 2.0;                  // in kT: how far beyond the plan's window the line goes, below the gap
+constexpr double STEP = 0.7;                     // along the line, in kT
+constexpr double FURTHER = 1.9;                  // in kT: how far beyond the plan's window the line goes, below the gap
 constexpr double BEYOND = 3.0;                   // poles up to so many steps above the line are seen by it
 constexpr double NARROWEST = 1e-8;               // meV; poles of less width change no conductance and lose all digits
 
@@ -60,8 +60,14 @@ struct ContourPoint {
     double isolation = 0.0;  // distance to the next one
     double moved = 0.0;      // distance from the model's
     EndMatrix own{};         // what the model has for G at z
-    Amplitude y[8] = {};     // Γv̄
+    Amplitude v[8] = {};     // v̄, of which the residue is v̄v̄ᵀ
+    Amplitude y[8] = {};     // Γv̄ in the units of the model
     Amplitude scale = 0.0;   // 1/λ = 1 + scale · yᵀ(G − own)y
+
+    void set_residue() {
+        for (int i = 0; i < 8; ++i)
+            for (int j = 0; j < 8; ++j) conjugate(i, j) = v[i] * v[j];
+    }
 };
 
 namespace detail {
@@ -105,20 +111,22 @@ inline double isolation(const Resonances& of, int p) {
 // A pole's point; own is the model's G there.
 inline ContourPoint point_of_pole(const Pole& pole, const EndMatrix& own, const Line& line, const Leads& leads, double hop) {
     const Amplitude z = std::conj(pole.z);
-    EndMatrix S = leads.inverse.at(pole.z), gamma = leads.gamma.at(z), residue, left{};
+    EndMatrix S = leads.inverse.at(pole.z), gamma = leads.gamma.at(z), columns{};  // v̄ and Γv̄
     Amplitude v[8], width = 0.0;
     for (int k = 0; k < 8; ++k) {
         v[k] = 0.0;
         for (int l = 0; l < 8; ++l) v[k] += S(k, l) * pole.t[l];
         v[k] /= std::sqrt(pole.norm);
+        columns(k, 0) = std::conj(v[k]);
     }
     for (int k = 0; k < 8; ++k)
-        for (int l = 0; l < 8; ++l) residue(k, l) = hop * std::conj(v[k] * v[l]), left(k, 0) += gamma(k, l) * std::conj(v[l]);
-    for (int k = 0; k < 8; ++k) width += left(k, 0) * v[k];
-    ContourPoint point{ContourPoint::POLE_OF_MODEL, z, line.weight_of_pole(z), true, from_chiral(residue)};
+        for (int l = 0; l < 8; ++l) columns(k, 1) += gamma(k, l) * std::conj(v[l]);
+    for (int k = 0; k < 8; ++k) width += columns(k, 1) * v[k];
+    columns = from_chiral_rows(columns);
+    ContourPoint point{ContourPoint::POLE_OF_MODEL, z, line.weight_of_pole(z), true, {}};
     point.pole = pole.z, point.own = own;
-    left = from_chiral_rows(left);
-    for (int k = 0; k < 8; ++k) point.y[k] = left(k, 0);
+    for (int k = 0; k < 8; ++k) point.y[k] = columns(k, 1), point.v[k] = std::sqrt(hop) * columns(k, 0);
+    point.set_residue();
     point.scale = (z - pole.z) / (width * width * hop);
     return point;
 }

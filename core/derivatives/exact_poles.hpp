@@ -10,7 +10,7 @@
 namespace core {
 
 constexpr int STEPS_TO_POLE = 5;           // at most
-constexpr int FIRST_ITERATIONS = 4, FURTHER_ITERATIONS = 2;  // with the same z: in the first step, in all others
+constexpr int FIRST_ITERATIONS = 3, FURTHER_ITERATIONS = 2;  // with the same z: in the first step, in all others
 constexpr double MOST_OF_WAY = 0.5;        // a pole that moves by more than this many steps of the line is lost
 constexpr double LAST_STEP = 1e-2;   // of the width, and of the way to the next pole: a pole that moves by less is there
 constexpr double SAME_POLE = 1e-2;   // of the same: two that are nearer are one
@@ -115,8 +115,8 @@ inline void find_exact_poles(const GradientField& field, const Line& line, doubl
             done[l] = !(std::abs(to - points[l].pole) < MOST_OF_WAY * line.step) || !(to.imag() < 0);  // lost
             if (done[l]) continue;
             point.pole = to;
-            for (int i = 0; i < 8; ++i)
-                for (int j = 0; j < 8; ++j) point.conjugate(i, j) = std::conj(of(ends[i], l) * of(ends[j], l) / (root * root));
+            for (int i = 0; i < 8; ++i) point.v[i] = std::conj(of(ends[i], l) / root);
+            point.set_residue();
             done[l] = std::abs(shift) < LAST_STEP * std::min(-to.imag(), point.isolation);
             if (done[l]) {
                 point.moved = std::abs(to - points[l].pole);

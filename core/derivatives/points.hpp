@@ -31,6 +31,8 @@ class PointsOfSet {
         C plus = C(0.0), minus = C(0.0);  // with K_V and K_−V
     };
     std::vector<Weights> kernel;  // (bias,), zero where there is no point
+    DriveAt<R> drives[PROBABILITIES];
+    SiteSums<R> sums[PROBABILITIES];
 
     // Re of the weights times the conductances that six probabilities make.
     static CORE_INLINE void add(const Conductances<C>& G, const Weights& w, double sign_of_minus, R* to) {
@@ -61,14 +63,16 @@ public:
     }
 
     void add() {
-        DriveAt<R> drives[PROBABILITIES];
-        SiteSums<R> sums[PROBABILITIES];
+        if (std::all_of(points, points + count, [](const ContourPoint& of) { return of.kind != ContourPoint::ON_LINE; })) {
+            add_poles();
+            return;
+        }
         auto meet = [&](Ends<R> G) {
-            C square = model_at_poles(G);
+            C scale = model_at_poles(G);
             for (int k = 0; k < PROBABILITIES; ++k) {
                 drives[k].fill(G, at.leads, FROM[k], TO[k]);
                 for (auto& row : drives[k].m)
-                    for (auto& entry : row) entry = entry * square;
+                    for (auto& entry : row) entry = entry * (scale * scale);
             }
         };
         auto use = [&](int n, const Block4<C>& P, const Block4<C>& Q) {
@@ -76,20 +80,58 @@ public:
             for (int c = 0; c < 2; ++c)
                 for (int q = 0; q < 2; ++q)
                     for (int i = 0; i < 4; ++i) wave[c][q][i] = P(i, 2 * c + q), wave[2 + c][q][i] = Q(i, 2 * c + q);
-            for (int k = 0; k < PROBABILITIES; ++k)
-                tau_z[k] = add_site(field.frames[n], drives[k].m, wave[FROM[k]], wave[TO[k]], sums[k]);
-            Conductances<C> G = conductances_of(tau_z);
-            R* to = &room.by_V[size_t(n) * kernel.size() * 4];
-            for (size_t v = 0; v < kernel.size(); ++v) add(G, kernel[v], 1.0, to + 4 * v);
+#pragma GCC unroll 6
+            for (int k = 0; k < PROBABILITIES; ++k) {
+                C u[2][4];
+                const auto& m = drives[k].m;
+                const auto& to = wave[TO[k]];
+                for (int q = 0; q < 2; ++q)
+                    for (int i = 0; i < 4; ++i) u[q][i] = to[0][i] * m[0][q] + to[1][i] * m[1][q];
+                tau_z[k] = add_site<2, R>(field.frames[n], u, wave[FROM[k]], sums[k]);
+            }
+            add_by_V(n, tau_z);
         };
         for_all_columns<R>(view(field.wire), at.terms, at.leads.sigma, room.sites, meet, use);
-        add_changes(drives, sums);
+        add_changes();
     }
 
 private:
-    // Take the model's G for that of the ends at its poles, and return λ².
+    // The same where all points are at poles: Q_ab is x_b x_aᵀ, x_c = λ G_·c Γ_c v̄_c.
+    void add_poles() {
+        C f[CHANNELS][2];
+        auto meet = [&](Ends<R> G) {
+            C scale = model_at_poles(G);
+            for (int c = 0; c < CHANNELS; ++c)
+                for (int p = 0; p < 2; ++p) {
+                    C driven = at.leads.gamma[c][p] * at.leads.v[2 * c] + at.leads.gamma[c][p + 1] * at.leads.v[2 * c + 1];
+                    f[c][p] = driven * scale;
+                }
+            for (int k = 0; k < PROBABILITIES; ++k) drives[k].fill(G, at.leads, FROM[k], TO[k]);
+        };
+        auto use = [&](int n, const Block4<C>& P, const Block4<C>& Q) {
+            C x[CHANNELS][1][4], tau_z[PROBABILITIES];
+            for (int c = 0; c < 2; ++c)
+                for (int i = 0; i < 4; ++i) {
+                    x[c][0][i] = P(i, 2 * c) * f[c][0] + P(i, 2 * c + 1) * f[c][1];
+                    x[2 + c][0][i] = Q(i, 2 * c) * f[2 + c][0] + Q(i, 2 * c + 1) * f[2 + c][1];
+                }
+#pragma GCC unroll 6
+            for (int k = 0; k < PROBABILITIES; ++k) tau_z[k] = add_site<1, R>(field.frames[n], x[TO[k]], x[FROM[k]], sums[k]);
+            add_by_V(n, tau_z);
+        };
+        for_all_columns<R>(view(field.wire), at.terms, at.leads.sigma, room.sites, meet, use);
+        add_changes();
+    }
+
+    CORE_INLINE void add_by_V(int n, const C (&tau_z)[PROBABILITIES]) const {
+        Conductances<C> G = conductances_of(tau_z);
+        R* to = &room.by_V[size_t(n) * kernel.size() * 4];
+        for (size_t v = 0; v < kernel.size(); ++v) add(G, kernel[v], 1.0, to + 4 * v);
+    }
+
+    // Take the model's G for that of the ends at its poles, and return λ.
     C model_at_poles(Ends<R>& G) const {
-        C square(1.0);
+        C scale(1.0);
         for (int l = 0; l < count; ++l) {
             const ContourPoint& point = points[l];
             if (point.kind != ContourPoint::POLE_OF_MODEL) continue;
@@ -97,13 +139,14 @@ private:
             for (int i = 0; i < 8; ++i)
                 for (int j = 0; j < 8; ++j)
                     over += point.scale * point.y[i] * (Amplitude(G(i, j).re[l], G(i, j).im[l]) - point.own(i, j)) * point.y[j];
-            PointLanes::set(square, l, 1.0 / (over * over));
+            PointLanes::set(scale, l, 1.0 / over);
             set_ends(G, l, point.own);
         }
-        return square;
+        return scale;
     }
 
-    void add_changes(const DriveAt<R> (&drives)[PROBABILITIES], const SiteSums<R> (&sums)[PROBABILITIES]) const {
+    // All but what the derivatives by V say.
+    void add_changes() const {
         C by[BY_ENERGY + 1][PROBABILITIES];
         double per_meV = 1 / field.hop;
         auto minus_twice = [](C x) { return -(x + x); };
@@ -111,10 +154,8 @@ private:
             const SiteSums<R>& s = sums[k];
             const auto& leads_do = drives[k].through_leads;
             auto pairing = [&](const C(&by)[2]) { return minus_twice(by[0] * s.one + by[1] * s.tau_x); };
-            C onsite = at.terms.normal * s.one + at.terms.anomalous * s.tau_x - at.terms.kinetic * s.tau_z;
-            onsite = onsite - s.weighted - s.along * R(field.zeeman);
+            C onsite = at.terms.normal * s.one + at.terms.anomalous * s.tau_x - s.along * R(field.zeeman);
             C turned = s.across * R(2 * field.zeeman * field.angle_slope) + onsite * R(field.hop_slope);
-            by[BY_MU][k] = minus_twice(s.tau_z * R(per_meV));
             by[BY_ZEEMAN][k] = -minus_twice(s.along * R(per_meV));
             by[BY_ALPHA][k] = leads_do[LEAD_ALPHA] - minus_twice(turned);
             by[BY_GAMMA][k] = pairing(at.by_gamma);
@@ -122,7 +163,7 @@ private:
             by[BY_LEAD_ZEEMAN][k] = leads_do[LEAD_ZEEMAN];
             by[BY_ENERGY][k] = leads_do[LEAD_ENERGY] + pairing(at.by_energy);
         }
-        for (int change = 0; change < BY_ENERGY; ++change) add_to_others(change, by[change]);
+        for (int change = BY_ZEEMAN; change < BY_ENERGY; ++change) add_to_others(change, by[change]);
         add_to_others(BY_ENERGY, by[BY_ENERGY], -1.0);  // p(−ω) has the slope of the other sign
     }
 };

@@ -46,7 +46,8 @@ struct GradientField {
           wire(of, at.grid.B[f]) {
         double phi = of.angle();
         for (int n = 0; n < of.sites; ++n)
-            frames.push_back({std::cos(2 * phi * n), std::sin(2 * phi * n), double(n), wire.V[n], n % 2 == 0 ? 1.0 : -1.0});
+            frames.push_back({std::cos(2 * phi * n), std::sin(2 * phi * n), n * std::cos(2 * phi * n), n * std::sin(2 * phi * n),
+                              n % 2 == 0 ? 1.0 : -1.0});
         double vandermonde[CUBIC][CUBIC], energy[CUBIC];
         std::copy_n(at.energies, CUBIC, energy);
         invert_vandermonde(energy, vandermonde);

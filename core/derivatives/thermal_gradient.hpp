@@ -26,13 +26,15 @@ inline double gradient_of_set(const detail::GradientField& field, const EnergyPl
     size_t sites = field.of.sites, values = size_t(plan.biases) * 4;
     room.sites.resize(sites);
     room.by_V.assign(sites * values, PointLanes::R(0.0)), room.others.assign((BY_ENERGY + 1) * values, PointLanes::R(0.0));
-    auto in_lanes = [](size_t total, auto use) {
-        for (size_t first = 0; first < total; first += REGISTER) use(first, int(std::min(total - first, size_t(REGISTER))));
+    auto in_lanes = [](size_t from, size_t to, auto use) {
+        for (size_t first = from; first < to; first += REGISTER) use(first, int(std::min(to - first, size_t(REGISTER))));
     };
+    auto add = [&](size_t first, int count) { PointsOfSet(field, plan, mu, &points[first], count, room).add(); };
     size_t poles = std::count_if(points.begin(), points.end(), [](const ContourPoint& of) { return of.kind != ContourPoint::ON_LINE; });
-    in_lanes(poles, [&](size_t first, int count) { find_exact_poles(field, Line(plan.kT), mu, &points[first], count, room); });
+    in_lanes(0, poles, [&](size_t first, int count) { find_exact_poles(field, Line(plan.kT), mu, &points[first], count, room); });
     leave_out_twins(points);
-    in_lanes(points.size(), [&](size_t first, int count) { PointsOfSet(field, plan, mu, &points[first], count, room).add(); });
+    in_lanes(0, poles, add);
+    in_lanes(poles, points.size(), add);
     auto total = [](const PointLanes::R& x) {
         double sum = 0.0;
         for (int l = 0; l < REGISTER; ++l) sum += x[l];
@@ -44,6 +46,11 @@ inline double gradient_of_set(const detail::GradientField& field, const EnergyPl
     for (size_t v = 0; v < values; ++v) {
         double* to = others + v * CHANGES;
         for (int change = 0; change <= BY_ENERGY; ++change) to[change] = total(room.others[change * values + v]);
+        double kinetic = 2 * field.of.hopping - mu;
+        for (size_t n = 0; n < sites; ++n) {
+            to[BY_MU] -= by_V[v * sites + n];
+            to[BY_ALPHA] -= field.hop_slope * (kinetic + field.of.V[n]) * by_V[v * sites + n];  // stretched with 1/t'
+        }
         error = largest(error, plan.kT * std::abs(to[BY_ENERGY] - to[BY_BIAS]));
     }
     return error;
