@@ -16,9 +16,9 @@
 //
 // At the pole of a narrow level G is as large as 1/width, and the two columns of Q_ab are nearly the same imaginary
 // vector: all but a part width/kT of the residue drops out.  So z_k must be that of the very matrix of which G is the
-// inverse, to a small part of the width, and is found from it (exact_poles.hpp).  Where two
-// poles are equal, the model serves instead: to it its own G, with vvᵀ/(z_k* − z_k), is right, and the matrix has
-// λ⁻¹vvᵀ/(z_k* − z_k) beside the same rest.  λ follows from both at the ends, and multiplies each column of Q_ab.
+// inverse, to a small part of the width, and is found from it (exact_poles.hpp).  Where two poles are equal, the model
+// serves instead: to it its own G, with vvᵀ/(z_k* − z_k), is right, and the matrix has λ⁻¹vvᵀ/(z_k* − z_k) beside the
+// same rest.  λ follows from both at the ends, and multiplies each column of Q_ab.
 //
 // Particle–hole symmetry makes f at −z* that of z with electrons and holes exchanged, so only Re z ≥ 0 is summed.
 #pragma once
@@ -30,8 +30,10 @@
 namespace core {
 
 constexpr double HEIGHT = std::numbers::pi / 2;  // of the line, in kT: half way to the poles of the kernel
-constexpr double STEP = 0.7;                     // along the line, in kT
-constexpr double FURTHER = 1.9;                  // in kT: how far beyond the plan's window the line goes, below the gap
+// In kT, along the line and how far it goes beyond the plan's window.  Of 320 random derivatives half are within 2e-5 of
+// the largest; with steps of 0.75, 0.65 and 0.55 they are within 4e-5, 7e-6 and 3e-6.  Where the line ends with the window,
+// 64 to 74 of a hundred are within 1e-4, with this end 73 to 88, with 4 kT more 79 to 91.
+constexpr double STEP = 0.7, FURTHER = 1.9;
 constexpr double BEYOND = 3.0;                   // poles up to so many steps above the line are seen by it
 constexpr double NARROWEST = 1e-8;               // meV; poles of less width change no conductance and lose all digits
 
