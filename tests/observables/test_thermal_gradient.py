@@ -15,6 +15,7 @@ from numpy.testing import assert_allclose
 from disorder_landscape import ArgumentError, Nanowire, conductance, conductance_gradient
 from disorder_landscape.model.disorder import disorder_realization
 from disorder_landscape.model.quantities import AXES, CONDUCTANCES
+from disorder_landscape.solver import compiled
 from disorder_landscape.solver.quadrature import thermal_quadrature
 from random_wires import fields, mus, random_wire, seeds
 
@@ -199,6 +200,26 @@ def test_hot_and_lossy_wires_have_differences():
     assert at_rest.dG_LL_ddissipation.item() == pytest.approx((G[1] - G[0]) / 1e-5, rel=1e-2)
 
 
+def test_sets_without_a_model_have_differences(monkeypatch):
+    wire = random_wire(9, sites=4)
+    expected_of = conductance_gradient(wire, 0.2, [0.1, 0.3], 0.02)
+    core_of = compiled.thermal_gradient
+
+    def none_at_first(*arguments):
+        found = core_of(*arguments)
+        for of in (found.conductance, found.by_V, found.others):
+            of[:, 0] = np.nan
+        found.error[:, 0] = found.difference[:, 0] = np.inf
+        return found
+
+    monkeypatch.setattr(compiled, "thermal_gradient", none_at_first)
+    found = conductance_gradient(wire, 0.2, [0.1, 0.3], 0.02)
+    assert found.energies[0, 0] > expected_of.energies[0, 0]
+    for name in set(found.data_vars) - {"error", "energies", "gradient_error"}:
+        size = abs(expected_of[name]).max().item()
+        assert_allclose(found[name], expected_of[name], rtol=0, atol=1e-3 * size + 1e-6)
+
+
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
@@ -208,7 +229,7 @@ def test_hot_and_lossy_wires_have_differences():
         ({"direction": {"V": 1.0}}, "one number for each site"),
         ({"direction": {"mu": np.nan}}, "must be a number"),
         ({"weights": 3.0}, "weights must be a Dataset"),
-        ({"weights": xr.Dataset(), "direction": {"mu": 1.0}}, "not come with a direction"),
+        ({"weights": xr.Dataset(), "direction": {"mu": 1.0}}, "come without parameters or weights"),
         ({"temperature": -1.0}, "temperature must"),
         ({"progress": 3}, "progress must"),
     ],

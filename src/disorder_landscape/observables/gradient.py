@@ -104,7 +104,8 @@ def conductance_gradient(
         "bias": grid_in("bias", bias, -edge, edge, "meV"),
     }
     names = _known(parameters if direction is None else direction, temperature)
-    require(direction is None or weights is None, "weights", "not come with a direction", "they do")
+    alone = direction is None or (weights is None and parameters is None)
+    require(alone, "direction", "come without parameters or weights", "it does not")
     along = {} if direction is None else _checked_direction(direction, wire)
     w = None if weights is None else _checked_weights(weights, grids)
     parts = []

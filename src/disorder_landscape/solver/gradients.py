@@ -157,9 +157,11 @@ def _at_one_gap(
     if routes.closed_form_reaches([wire], bias, temperature):
         found = _of_the_core(wire, mu, B, bias, temperature)
         missing = [name for name in names if name in BY_DIFFERENCES]
+        _complete(found, wire, mu, B, bias, temperature, names)
     else:
-        average = routes.thermal_average([wire], mu, B, bias, temperature)
-        G, error, energies = (part[0] for part in average)
+        G, error, energies = (
+            part[0] for part in routes.thermal_average([wire], mu, B, bias, temperature)
+        )
         found = Gradient(
             G, {"critical_field": np.zeros_like(G)}, error, energies, np.zeros(error.shape)
         )
@@ -169,6 +171,33 @@ def _at_one_gap(
         by[name], share = difference(wire, mu, B, bias, temperature, name)
         worst = np.maximum(worst, share)
     return replace(found, by=by, gradient_error=worst)
+
+
+def _complete(
+    found: Gradient,
+    wire: Nanowire,
+    mu: FloatArray,
+    B: FloatArray,
+    bias: FloatArray,
+    temperature: float,
+    names: Sequence[str],
+) -> None:
+    """Take conductances that have no good model from the quadrature, and what has none at all."""
+    for m, f in np.argwhere(~(found.error <= compiled.core.TOLERANCE)):
+        point = mu[m : m + 1], B[f : f + 1], bias, temperature
+        average = routes.thermal_average([wire], *point)
+        found.conductance[m, f], found.error[m, f] = (
+            average.conductance[0, 0, 0],
+            average.error.item(),
+        )
+        found.energies[m, f] += average.energies.item()
+        if np.isfinite(found.gradient_error[m, f]):
+            continue
+        found.gradient_error[m, f] = LEAST
+        for name in set(names) - {"critical_field", *BY_DIFFERENCES}:
+            one, share = difference(wire, *point, name)
+            found.by[name][m, f] = one[0, 0]
+            found.gradient_error[m, f] = max(found.gradient_error[m, f], share.item())
 
 
 def _of_the_core(
