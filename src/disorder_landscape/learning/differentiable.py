@@ -82,14 +82,20 @@ def differentiable_conductance(
             rows.append([slopes[name].to_numpy() for name in names])
         return [np.array(column) for column in zip(*rows, strict=True)]
 
+    def of_arrays(function: Callable[..., Any]) -> Callable[..., Any]:
+        return lambda *given: function(*(tensor.numpy() for tensor in given))
+
     @tf.custom_gradient  # type: ignore[untyped-decorator]
     def operation(*tensors: Tensor) -> tuple[Tensor, Callable[[Tensor], Any]]:
-        G = tf.numpy_function(forward, tensors, tf.float64)
+        G = tf.py_function(of_arrays(forward), tensors, tf.float64)
         grids = [np.atleast_1d(np.asarray(axis)).size for axis in (mu, B, bias)]
         G = tf.ensure_shape(G, (tensors[0].shape[0], *grids, len(CONDUCTANCES)))
 
         def slopes(upstream: Tensor) -> list[Tensor]:
-            found = tf.numpy_function(backward, [upstream, *tensors], [tf.float64] * len(names))
+            kinds = [tf.float64] * len(names)
+            found = tf.nest.flatten(
+                tf.py_function(of_arrays(backward), [upstream, *tensors], kinds)
+            )
             return [tf.ensure_shape(of, t.shape) for of, t in zip(found, tensors, strict=True)]
 
         return G, slopes
