@@ -26,20 +26,18 @@ struct LeadsAt {
     C slope[LEAD_CHANGES][CHANNELS][3], gamma_slope[LEAD_CHANGES][CHANNELS][3];
     C conjugate[8][8], v[8];  // v of poles alone
 
-    static void set(C& x, int lane, Amplitude value) { x.re.set(lane, value.real()), x.im.set(lane, value.imag()); }
-
     void set(int lane, const ContourPoint& at, const ContinuedLead& leads, const ContinuedLead (&slopes)[LEAD_CHANGES]) {
         for (int c = 0; c < CHANNELS; ++c)
             for (int e = 0; e < 3; ++e) {
-                set(sigma.of[c][e], lane, leads.sigma(at.z, c, e)), set(gamma[c][e], lane, leads.gamma(at.z, c, e));
+                Batch::set(sigma.of[c][e], lane, leads.sigma(at.z, c, e)), Batch::set(gamma[c][e], lane, leads.gamma(at.z, c, e));
                 for (int by = 0; by < LEAD_CHANGES; ++by) {
-                    set(slope[by][c][e], lane, slopes[by].sigma(at.z, c, e));
-                    set(gamma_slope[by][c][e], lane, slopes[by].gamma(at.z, c, e));
+                    Batch::set(slope[by][c][e], lane, slopes[by].sigma(at.z, c, e));
+                    Batch::set(gamma_slope[by][c][e], lane, slopes[by].gamma(at.z, c, e));
                 }
             }
         for (int i = 0; i < 8; ++i)
-            for (int j = 0; j < 8; ++j) set(conjugate[i][j], lane, at.conjugate(i, j));
-        for (int i = 0; i < 8; ++i) set(v[i], lane, at.v[i]);
+            for (int j = 0; j < 8; ++j) Batch::set(conjugate[i][j], lane, at.conjugate(i, j));
+        for (int i = 0; i < 8; ++i) Batch::set(v[i], lane, at.v[i]);
     }
 };
 

@@ -90,7 +90,6 @@ public:
 // Levels that the ends hardly see the model may have at a wrong place, and what they carry is as little.
 inline void find_exact_poles(const GradientField& field, const Line& line, double mu, ContourPoint* points, int count, GradientRoom& room) {
     using C = PointLanes::C;
-    auto of = [](const C& x, int l) { return Amplitude(x.re[l], x.im[l]); };
     std::vector<ContourPoint> now(points, points + count);
     std::vector<bool> done;
     for (const ContourPoint& point : now) done.push_back(point.isolation == 0.0);
@@ -98,7 +97,7 @@ inline void find_exact_poles(const GradientField& field, const Line& line, doubl
         if (!done[l]) points[l].weight = 0.0;  // unless it is found
     C y[8];
     for (int l = 0; l < REGISTER; ++l)
-        for (int i = 0; i < 8; ++i) PointLanes::set(y[i], l, points[std::min(l, count - 1)].y[i]);
+        for (int i = 0; i < 8; ++i) Batch::set(y[i], l, points[std::min(l, count - 1)].y[i]);
     Vectors vectors(room.sites, y);
     for (int step = 0; step < STEPS_TO_POLE && std::count(done.begin(), done.end(), false) > 0; ++step) {
         for (ContourPoint& point : now) point.z = point.pole;
@@ -111,11 +110,11 @@ inline void find_exact_poles(const GradientField& field, const Line& line, doubl
         for (int l = 0; l < count; ++l) {
             if (done[l]) continue;
             ContourPoint& point = now[l];
-            Amplitude shift = of(top, l) / of(slope, l), root = std::sqrt(of(slope, l)), to = point.z - shift;
+            Amplitude shift = Batch::get(top, l) / Batch::get(slope, l), root = std::sqrt(Batch::get(slope, l)), to = point.z - shift;
             done[l] = !(std::abs(to - points[l].pole) < MOST_OF_WAY * line.step) || !(to.imag() < 0);  // lost
             if (done[l]) continue;
             point.pole = to;
-            for (int i = 0; i < 8; ++i) point.v[i] = std::conj(of(ends[i], l) / root);
+            for (int i = 0; i < 8; ++i) point.v[i] = std::conj(Batch::get(ends[i], l) / root);
             point.set_residue();
             done[l] = std::abs(shift) < LAST_STEP * std::min(-to.imag(), point.isolation);
             if (done[l]) {

@@ -18,7 +18,6 @@ struct GradientRoom {
 
 // Up to REGISTER points of one set.
 class PointsOfSet {
-    static constexpr int W = REGISTER;
     using R = PointLanes::R;
     using C = PointLanes::C;
 
@@ -56,8 +55,8 @@ public:
             const ContourPoint& point = points[l];
             Amplitude mirrored = point.mirrored ? point.weight : 0.0;
             for (int v = 0; v < plan.biases; ++v) {
-                PointLanes::set(kernel[v].plus, l, point.weight * thermal_kernel(point.z, plan.bias[v], plan.kT));
-                PointLanes::set(kernel[v].minus, l, mirrored * thermal_kernel(point.z, -plan.bias[v], plan.kT));
+                Batch::set(kernel[v].plus, l, point.weight * thermal_kernel(point.z, plan.bias[v], plan.kT));
+                Batch::set(kernel[v].minus, l, mirrored * thermal_kernel(point.z, -plan.bias[v], plan.kT));
             }
         }
     }
@@ -138,8 +137,8 @@ private:
             Amplitude over = 1.0;
             for (int i = 0; i < 8; ++i)
                 for (int j = 0; j < 8; ++j)
-                    over += point.scale * point.y[i] * (Amplitude(G(i, j).re[l], G(i, j).im[l]) - point.own(i, j)) * point.y[j];
-            PointLanes::set(scale, l, 1.0 / over);
+                    over += point.scale * point.y[i] * (Batch::get(G(i, j), l) - point.own(i, j)) * point.y[j];
+            Batch::set(scale, l, 1.0 / over);
             set_ends(G, l, point.own);
         }
         return scale;

@@ -72,16 +72,15 @@ struct PointLanes {
         for (int l = 0; l < REGISTER; ++l) {
             const ContourPoint& at = points[std::min(l, count - 1)];
             PairingChanges pairing(field.of, at.z);
-            set(terms.kinetic, l, (2 * field.of.hopping - mu) / field.hop);
-            set(terms.normal, l, pairing.normal / field.hop), set(terms.anomalous, l, pairing.anomalous / field.hop);
+            Batch::set(terms.kinetic, l, (2 * field.of.hopping - mu) / field.hop);
+            Batch::set(terms.normal, l, pairing.normal / field.hop), Batch::set(terms.anomalous, l, pairing.anomalous / field.hop);
             for (int k = 0; k < 2; ++k) {
-                set(by_gamma[k], l, pairing.by_gamma[k] / field.hop), set(by_delta0[k], l, pairing.by_delta0[k] / field.hop);
-                set(by_energy[k], l, pairing.by_energy[k] / field.hop);
+                Batch::set(by_gamma[k], l, pairing.by_gamma[k] / field.hop), Batch::set(by_delta0[k], l, pairing.by_delta0[k] / field.hop);
+                Batch::set(by_energy[k], l, pairing.by_energy[k] / field.hop);
             }
             leads.set(l, at, field.leads, field.slopes);
         }
     }
-    static void set(C& x, int lane, Amplitude value) { LeadsAt<R>::set(x, lane, value); }
 };
 
 }  // namespace detail

@@ -19,10 +19,12 @@ struct ContinuedLead {
     // at(k) is the LeadSelfEnergy at the k-th of the energies that `vandermonde` inverts.
     template <class At>
     ContinuedLead(const double (&vandermonde)[CUBIC][CUBIC], At at) {
-        for (int k = 0; k < CUBIC; ++k)
+        for (int k = 0; k < CUBIC; ++k) {
+            const LeadSelfEnergy here = at(k);
             for (int p = 0; p < CUBIC; ++p)
                 for (int c = 0; c < CHANNELS; ++c)
-                    for (int e = 0; e < 3; ++e) coefficient[p][c][e] += vandermonde[p][k] * at(k).of[c](e / 2, (e + 1) / 2);
+                    for (int e = 0; e < 3; ++e) coefficient[p][c][e] += vandermonde[p][k] * here.of[c](e / 2, (e + 1) / 2);
+        }
     }
     // Its derivative by the energy.
     ContinuedLead slope() const {
