@@ -18,6 +18,7 @@ from disorder_landscape.model.parameters import BOHR_MAGNETON, BOLTZMANN, FloatA
 from disorder_landscape.solver import compiled, routes
 from disorder_landscape.solver.difference_gradient import difference
 from disorder_landscape.solver.lead_slopes import rotated_lead_slopes
+from disorder_landscape.solver.quadrature import thermal_quadrature
 
 AT_ZERO = {
     "V": "meV",
@@ -185,7 +186,7 @@ def _complete(
     """Take conductances that have no good model from the quadrature, and what has none at all."""
     for m, f in np.argwhere(~(found.error <= compiled.core.TOLERANCE)):
         point = mu[m : m + 1], B[f : f + 1], bias, temperature
-        average = routes.thermal_average([wire], *point)
+        average = thermal_quadrature([wire], *point)
         found.conductance[m, f], found.error[m, f] = (
             average.conductance[0, 0, 0],
             average.error.item(),
