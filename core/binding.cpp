@@ -179,7 +179,7 @@ ComplexArray lead_self_energies(Matrix V, Matrix parameters, double B, Vector om
 // The weights of a smooth function's values at the plan's nodes ω_k, then −ω_k, in its thermal averages, shape
 // (bias, 2·node).
 Array thermal_weights(Vector bias, double kT, int nodes) {
-    EnergyPlan plan(bias.data(), int(bias.size()), kT, nodes);
+    EnergyPlan plan(bias.data(), int(bias.size()), kT, nodes, Reach::WINDOW);
     Array out = new_array({bias.size(), 2 * size_t(nodes)});
     for (size_t v = 0; v < bias.size(); ++v) std::copy_n(plan.weights[v].begin(), 2 * nodes, out.data() + v * 2 * nodes);
     return out;
@@ -188,9 +188,10 @@ Array thermal_weights(Vector bias, double kT, int nodes) {
 // The same in the polynomial through them, at energies u in units of the window, shape (u, 2·node).
 Array interpolation_weights(Vector u, int nodes) {
     Array out = new_array({u.size(), 2 * size_t(nodes)});
+    const Interpolation polynomial = chebyshev_nodes(nodes);
     for (size_t k = 0; k < u.size(); ++k) {
-        auto weights = detail::interpolated({u.data()[k]}, {1.0}, nodes);
-        std::copy_n(weights.begin(), 2 * nodes, out.data() + k * 2 * nodes);
+        double* weights = std::fill_n(out.data() + k * 2 * nodes, 2 * nodes, 0.0) - 2 * nodes;
+        polynomial.add(u.data()[k], 1.0, weights);
     }
     return out;
 }
@@ -210,6 +211,7 @@ NB_MODULE(CORE_MODULE, m) {
     m.attr("TOLERANCE") = core::TOLERANCE;
     m.attr("FLOOR") = core::FLOOR;
     m.attr("REACH") = core::REACH;
+    m.attr("BELOW_GAP") = core::BELOW_GAP;
     m.attr("NODES") = std::vector<int>(std::begin(core::NODES), std::end(core::NODES));
     m.attr("COMPARED") = core::COMPARED;
     m.attr("GROWTH_LIMIT") = core::GROWTH_LIMIT;

@@ -132,7 +132,7 @@ std::vector<Levelled> levels_from_ends(Vector omega, ArrayIn<double, 4> G, Array
 // The levels that the thermal average finds in each of SETS copies of the first wire.
 std::vector<Levelled> levels_of_wire(Matrix V, Matrix parameters, double mu, double B, Vector bias, double kT, int nodes) {
     Wire wire = wires_of(V, parameters).front();
-    EnergyPlan plan(bias.data(), int(bias.size()), kT, nodes);
+    EnergyPlan plan(bias.data(), int(bias.size()), kT, nodes, Reach::WINDOW);
     SetIndex sets[SETS] = {};
     std::vector<SetData> data(SETS);
     for (SetData& of : data) of.isolated.resize(nodes), of.bare.resize(nodes + COMPARED), of.growth = 0.0;
@@ -140,6 +140,27 @@ std::vector<Levelled> levels_of_wire(Matrix V, Matrix parameters, double mu, dou
     std::vector<std::vector<NodeData>> isolated;
     for (const SetData& of : data) isolated.push_back(of.isolated);
     return levels_of({plan.omega.begin(), plan.omega.begin() + nodes}, isolated);
+}
+
+Array as_array(const std::vector<double>& values) {
+    Array out = new_array({values.size()});
+    std::copy(values.begin(), values.end(), out.data());
+    return out;
+}
+
+// At which energies a smooth function is known for its averages over a window that reaches the gap of a wire, below it and
+// above, and the weights of its values there and at minus these energies, (bias, energy).
+std::tuple<Array, Array, Array> averages_to_gap(Matrix V, Matrix parameters, Vector bias, double kT, int nodes) {
+    Wire wire = wires_of(V, parameters).front();
+    Reach reach = reach_of(bias.data(), int(bias.size()), kT, wire.delta0);
+    EnergyPlan plan(bias.data(), int(bias.size()), kT, nodes, reach, wire.delta0, resolved_up_to(wire, nodes));
+    std::vector<double> below(plan.omega.begin(), plan.omega.begin() + nodes), above = plan.above;
+    below.insert(below.end(), plan.omega.begin() + nodes + CHECKS, plan.omega.end());
+    above.pop_back();
+    Array weights = new_array({bias.size(), size_t(plan.smooth_values())});
+    for (size_t v = 0; v < bias.size(); ++v)
+        std::copy_n(plan.weights[v].begin(), plan.smooth_values(), weights.data() + v * plan.smooth_values());
+    return {as_array(below), as_array(above), weights};
 }
 
 // w of levels (E, w) once b of the low ones is known from G at ω.
@@ -169,7 +190,7 @@ std::pair<ComplexArray, ComplexArray> diagonalise_nearly(ArrayIn<Amplitude, 2> m
 // Where levels (E, w) are densest, in meV.
 Array densest(Vector E, Matrix w, double hop, double window) {
     double energies[SOUGHT];
-    dense_energies(as_levels(E, w), hop, window, energies);
+    dense_energies(as_levels(E, w), hop, EnergyPlan(&window, 1, 0.0, NODES[0], Reach::WINDOW), energies);
     Array out = new_array({SOUGHT});
     std::copy(energies, energies + SOUGHT, out.data());
     return out;
@@ -217,6 +238,7 @@ void bind_internals(nb::module_& m) {
     m.def("diagonalise", &diagonalise_sets);
     m.def("levels_from_ends", &levels_from_ends);
     m.def("levels_of_wire", &levels_of_wire);
+    m.def("averages_to_gap", &averages_to_gap);
     m.def("complete_low_levels", &complete_low_levels);
     m.def("diagonalise_nearly", &diagonalise_nearly);
     m.def("dense_energies", &densest);

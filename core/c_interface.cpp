@@ -59,9 +59,9 @@ struct Request {
     bool without_dissipation() const {
         return std::ranges::all_of(wires, [](const Wire& w) { return w.dissipation == 0; });
     }
-    bool below_the_gap(double kT) const {
-        double window = window_of(grid.omega, grid.omega_count, kT);
-        return std::ranges::all_of(wires, [&](const Wire& w) { return window < w.delta0; });
+    bool below_the_gap() const {
+        double largest = window_of(grid.omega, grid.omega_count, 0.0);
+        return std::ranges::all_of(wires, [&](const Wire& w) { return largest < w.delta0; });
     }
 };
 
@@ -91,7 +91,8 @@ int nanowire_thermal_conductance(int wires, int sites, const double* V, const do
     if (of.status != NANOWIRE_DONE) return of.status;
     if (!std::isfinite(kT) || !std::isfinite(tolerance)) return NANOWIRE_NOT_FINITE;
     if (!of.without_dissipation()) return NANOWIRE_BAD_WIRE;
-    if (!(kT > 0) || !of.below_the_gap(kT)) return NANOWIRE_BAD_TEMPERATURE;
+    if (!(kT > 0)) return NANOWIRE_BAD_TEMPERATURE;
+    if (!of.below_the_gap()) return NANOWIRE_BAD_BIAS;
     Stop never;
     std::vector<double> energies(of.points());
     thermal_conductance(of.grid, kT, tolerance, GROWTH_LIMIT, G, error, energies.data(), never);

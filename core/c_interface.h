@@ -41,8 +41,10 @@ enum nanowire_status {
     NANOWIRE_NOT_FINITE = 3,
     /* … t ≤ 0, Δ₀ ≤ 0, γ < 0 or dissipation < 0, or dissipation where there may be none; */
     NANOWIRE_BAD_WIRE = 4,
-    /* … kT ≤ 0, or so high that energies beyond the gap would count. */
-    NANOWIRE_BAD_TEMPERATURE = 5
+    /* … kT ≤ 0; */
+    NANOWIRE_BAD_TEMPERATURE = 5,
+    /* … a bias that is not below the gap. */
+    NANOWIRE_BAD_BIAS = 6
 };
 
 /* Room for so many doubles, to be given back by nanowire_free; NULL where there is none. */
@@ -65,7 +67,7 @@ NANOWIRE_API int nanowire_conductance(int wires, int sites, const double* V,
  *     G      (wire, mu, B, bias, 4)
  *     error  (wire, mu, B), estimated, of the worst of a point; infinite where none was found
  *
- * Some kT beyond each |bias| must end below the gap.  Work is added until the error is no more than
+ * Each |bias| must be below the gap.  Work is added until the error is no more than
  * the tolerance, for which Python takes 1e-4, or for NANOWIRE_INEXACT.
  */
 NANOWIRE_API int nanowire_thermal_conductance(int wires, int sites, const double* V,

@@ -74,11 +74,11 @@ inline void thermal_gradient(const ThermalGradientGrid& at, double tolerance, do
         leads.push_back(detail::leads_through(cubic, wire.rotated_hopping(),
                                               [&](int k) { return lead_self_energy(wire, grid.B[f], energy[k]); }));
     }
-    const EnergyPlan plan(grid.omega, grid.omega_count, at.kT, NODES[0]);  // of which the nodes are not looked at
+    const EnergyPlan plan(grid.omega, grid.omega_count, at.kT, NODES[0], Reach::WINDOW);  // of which the nodes are not looked at
     std::map<int, ShiftedAverages> shifted;  // of each number of nodes
     for (const SetModel& model : models)
         if (model.nodes > 0 && !shifted.contains(model.nodes))
-            shifted.try_emplace(model.nodes, EnergyPlan(grid.omega, grid.omega_count, at.kT, model.nodes));
+            shifted.try_emplace(model.nodes, EnergyPlan(grid.omega, grid.omega_count, at.kT, model.nodes, Reach::WINDOW));
     size_t values = size_t(grid.omega_count) * 4;
     in_parallel(grid.mu_count * grid.B_count, stop, [&](int set) {
         double *by_V = out.by_V + set * values * wire.sites, *others = out.others + set * values * CHANGES;

@@ -36,7 +36,7 @@ struct Pencil {
         apart.resize(size_t(nodes) * nodes);
         for (int k = 0; k < nodes; ++k)
             for (int m = 0; m < nodes; ++m)
-                apart[k * nodes + m] = k == m ? 0.0 : 1.0 / (omega[k] * omega[k] - omega[m] * omega[m]);
+                apart[k * nodes + m] = k == m ? 0.0 : 1.0 / ((omega[k] - omega[m]) * (omega[k] + omega[m]));
         for (int k = 0; k < nodes; ++k) resolvents(omega[k], data[k], phi.data() + 64 * k, norm.data() + 64 * k);
         for (int i = 0; i < n; ++i) scale[i] = 1.0 / std::sqrt(norm[8 * i + i % 8]);
         choose(omega, nodes);

@@ -69,8 +69,8 @@ inline void reflect(Resonances& of, int k) {
 
 // Put the poles in order.  A pole in the left half stands for its mirror image; one that did not converge is
 // left out: near the axis another's image may stand for it.  Vectors of equal poles (Kramers pairs at B = 0)
-// are made orthogonal; one that is not new is left out: of these also return the last central one, and which
-// it equals, or −1.
+// are made orthogonal; one that is not new is left out: of these also return the last central one or, if there is
+// none, the last, and which it equals, or −1.
 inline std::pair<int, int> right_half(Resonances& found, const Levels& levels, const Leads& leads) {
     int again = -1, twin = -1;
     found.order.clear();
@@ -85,7 +85,7 @@ inline std::pair<int, int> right_half(Resonances& found, const Levels& levels, c
                 if (!faint && std::norm(found.poles[at].z - pole.z) < EQUAL * width * EQUAL * width) {
                     double left = orthogonalise(found, k, at, levels, leads);
                     kept = std::min(kept, left);
-                    if (central && !(kept > 0.1)) again = k, twin = at;
+                    if (!(kept > 0.1)) again = k, twin = at;
                 }
             }
             if (kept > 0.1) found.order.push_back(k);
@@ -97,26 +97,29 @@ inline std::pair<int, int> right_half(Resonances& found, const Levels& levels, c
 
 }  // namespace detail
 
-// Iterate the poles of `start_poles`.  Where two starts have ended at one pole of the imaginary axis, the
-// other one is looked for on either side of it.
+// Iterate the poles of `start_poles`.  Where two starts have ended at one pole, the other one is looked for again: on the
+// imaginary axis on either side of it, elsewhere from its start without the vector of the one found.
 inline Resonances find_poles(const Starts& starts, const Levels& levels, const Leads& leads, Batch& batch) {
     Resonances found{starts.poles, starts.vectors, {}};
     std::vector<int> all(found.poles.size());
     for (size_t k = 0; k < all.size(); ++k) all[k] = int(k);
     iterate(found.poles, found.vectors, all, leads, batch);
     auto [again, twin] = detail::right_half(found, levels, leads);
-    auto count = [&] { return found.paired + int(found.order.size()); };
-    found.whole = count() == starts.both;
-    if (found.whole || again < 0 || count() != starts.both - 1) return found;
-    for (double side : {1.0 - BESIDE, 1.0 + BESIDE}) {
+    auto lost = [&] { return starts.both - found.paired - int(found.order.size()); };
+    found.whole = lost() == 0;
+    if (found.whole || again < 0) return found;
+    bool central = std::abs(found.poles[twin].z.real()) <= CENTRAL;
+    if (lost() != (central ? 1 : 2)) return found;
+    const Amplitude there = found.poles[twin].z, here = starts.poles[again].z;
+    for (Amplitude z : central ? std::array{there * (1.0 - BESIDE), there * (1.0 + BESIDE)} : std::array{here, 2.0 * here - there}) {
         Pole& pole = found.poles[again];
-        pole.z = found.poles[twin].z * side;
+        pole.z = z;
         for (int n = 0; n < found.vectors.size(); ++n) found.vectors.set(again, n, starts.vectors.get(again, n));
         for (auto& entry : pole.t) entry = 0.0;
         detail::orthogonalise(found, again, twin, levels, leads);
         iterate(found.poles, found.vectors, {again}, leads, batch);
         detail::right_half(found, levels, leads);
-        found.whole = count() == starts.both;
+        found.whole = lost() == 0;
         if (found.whole) break;
     }
     return found;

@@ -175,12 +175,12 @@ struct Starts {
     int both;  // how many there are in both halves
 };
 
-// Approximate poles from G of the isolated wire at one energy ω.
-inline Starts start_poles(double omega, const double (&G)[8][8], double window, double hop, const Levels& levels,
+// Approximate poles of the levels below a limit, from G of the isolated wire at one energy ω.
+inline Starts start_poles(double omega, const double (&G)[8][8], double limit, double hop, const Levels& levels,
                           const Leads& leads) {
     std::vector<int> near;
     for (int n = 0; n < levels.size(); ++n)
-        if (levels.E[n] < NEAR * window && hop * levels.coupling(n) > INVISIBLE) near.push_back(n);
+        if (levels.E[n] < limit && hop * levels.coupling(n) > INVISIBLE) near.push_back(n);
     static thread_local detail::NearlyDiagonal H;
     detail::mix_levels(levels, near, detail::dressed_leads(omega, G, levels, near, leads), H);
     H.diagonalise();

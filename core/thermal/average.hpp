@@ -10,6 +10,8 @@
 namespace core {
 
 constexpr double ROUGHNESS = 10.0;  // estimated error over the smooth part's largest mismatch at the checks
+constexpr double ROUGHNESS_ABOVE = 3.0;  // the same above the gap, times the share that a node has of the average
+constexpr double LIKE_THESE = 1.0;  // Poles of so many units of τ before the samples tell how narrow those between them are.
 constexpr double SAFETY = 300.0;    // estimated error over the model's largest mismatch, times t', at the checks
 
 // What all conductances at real energies are made of: poles, and what is left of their values at the nodes, at ω, then
@@ -38,7 +40,7 @@ struct SetModel {
 struct SetData {
     std::vector<NodeData> isolated;           // (node,)
     Symmetric8<Complex<double>> green[COMPARED];  // leads attached, at the checks, chiral basis, 1/meV
-    std::vector<Conductances<double>> bare;   // (node + COMPARED,)
+    std::vector<Conductances<double>> bare;   // (node + COMPARED,), then above the gap
     double sought[SOUGHT];                    // the set's own checks in meV
     double growth;
 };
@@ -96,6 +98,29 @@ inline double mismatch(const double (&checks)[COMPARED], const double (&shares)[
     return std::sqrt(worst);
 }
 
+// The error that the samples next to the gap make.  Between them lie Lorentzians, of which they sum all but a part
+// exp(−2π width/distance) rightly, by as much as a share of the average as samples have.  Their heights and widths are taken from
+// the last poles before, or, if there are none, from the samples themselves.
+inline double error_of_samples(const EnergyPlan& plan, const RationalConductances& of) {
+    if (plan.samples == 0) return 0.0;
+    double worst = 0.0;
+    bool none = true;
+    for (int n = 0; n < of.poles.count; ++n) {
+        double x = of.poles.x[n], width = -of.poles.y[n] * plan.gap / ((plan.gap - x) * (plan.gap + x)), highest = 0.0;
+        if (!(x > plan.energy_before_samples(LIKE_THESE))) continue;
+        none = false;
+        for (int hole = 0; hole < 2; ++hole)
+            for (int c = 0; c < 4; ++c)
+                highest = std::max(highest, std::hypot(of.poles.re[hole][c][n], of.poles.im[hole][c][n]));
+        worst = std::max(worst, -2 * highest / of.poles.y[n] * std::exp(-2 * std::numbers::pi * width / plan.sample));
+    }
+    if (none)
+        for (const auto& rest : of.rest)
+            for (int k = 0; k < 2 * plan.nodes_below(); ++k)
+                if (k % plan.nodes_below() >= plan.nodes) worst = std::max(worst, std::abs(rest[k]));
+    return worst * plan.share_of_samples;
+}
+
 }  // namespace detail
 
 // Write the thermal conductances of one set, shape (bias, 4), and its model, if asked for; return the error estimate in
@@ -105,7 +130,7 @@ inline double rational_average(const EnergyPlan& plan, double hop, const LevelLi
     int m = plan.nodes, pick = plan.picks[1];
     Levels levels(list, plan.window);
     Batch batch(levels);
-    Starts starts = start_poles(plan.omega[pick], data.isolated[pick].G, plan.window, hop, levels, leads);
+    Starts starts = start_poles(plan.omega[pick], data.isolated[pick].G, plan.pole_limit(), hop, levels, leads);
     Resonances found = find_poles(starts, levels, leads, batch);
     if (!found.whole) return INFINITY;
     RationalConductances of{conductance_terms(found, leads, batch), {}};
@@ -114,10 +139,10 @@ inline double rational_average(const EnergyPlan& plan, double hop, const LevelLi
     double checks[COMPARED];
     for (int k = 0; k < COMPARED; ++k) checks[k] = k < CHECKS ? plan.omega[m + k] : data.sought[k - CHECKS];
     // What the poles leave of each conductance at the nodes, and at the checks: at ω, then at −ω.
-    auto& at_nodes = of.rest;
-    for (auto& values : at_nodes) values.resize(padded(2 * m), 0.0);
-    double at_checks[4][2 * COMPARED];
-    auto rest = [&](int count, auto omega, auto bare, auto set) {
+    int above = plan.nodes_above();
+    for (auto& values : of.rest) values.resize(padded(plan.smooth_values()), 0.0);
+    double at_checks[4][2 * COMPARED], at_check_above[4][2];
+    auto rest = [&](int count, const double* omega, const Conductances<double>* bare, auto set) {
         for (int first = 0; first < 2 * count; first += COLUMNS) {
             Columns energies = 0.0, of_poles[4];
             int some = std::min(COLUMNS, 2 * count - first);
@@ -128,32 +153,43 @@ inline double rational_average(const EnergyPlan& plan, double hop, const LevelLi
             sum_poles(terms, energies, of_poles);
             for (int l = 0; l < some; ++l) {
                 int k = first + l, sign = k < count ? 0 : 1;
-                for (int c = 0; c < 4; ++c) set(c, k, bare[k - sign * count].at[sign][c] - of_poles[c][l]);
+                for (int c = 0; c < 4; ++c) set(c, k - sign * count, sign, bare[k - sign * count].at[sign][c] - of_poles[c][l]);
             }
         }
     };
-    rest(m, plan.omega.data(), &data.bare[0], [&](int c, int k, double value) { at_nodes[c][k] = value; });
-    rest(COMPARED, checks, &data.bare[m], [&](int c, int k, double value) { at_checks[c][k] = value; });
+    int below = plan.nodes_below();
+    rest(m, plan.omega.data(), &data.bare[0], [&](int c, int k, int sign, double value) { of.rest[c][k + sign * below] = value; });
+    rest(below - m, &plan.omega[m + CHECKS], &data.bare[m + COMPARED],
+         [&](int c, int k, int sign, double value) { of.rest[c][m + k + sign * below] = value; });
+    rest(COMPARED, checks, &data.bare[m], [&](int c, int k, int sign, double value) { at_checks[c][k + sign * COMPARED] = value; });
+    rest(int(plan.above.size()), plan.above.data(), &data.bare[below + COMPARED], [&](int c, int k, int sign, double value) {
+        (k < above ? of.rest[c][2 * below + k + sign * above] : at_check_above[c][sign]) = value;
+    });
     auto polynomial = [&](const std::vector<double>& weights, int c) {
-        return dot(weights.data(), at_nodes[c].data(), padded(2 * m));
+        return dot(weights.data(), of.rest[c].data(), padded(plan.smooth_values()));
     };
     of.average(plan.weights, plan.bias, plan.kT, out);
 
-    double shares[COMPARED], rough = 0.0;
-    for (int k = 0; k < COMPARED; ++k) shares[k] = detail::share_that_counts(checks[k], plan.kT, terms);
+    double shares[COMPARED], rough = 0.0, over_gap = 0.0;
+    for (int k = 0; k < COMPARED; ++k) shares[k] = detail::share_that_counts(checks[k], plan.kT, terms) * plan.share(checks[k]);
     double of_model = SAFETY * hop * detail::mismatch(checks, shares, leads, data, batch);
     // Where levels are dense, the whole pattern of poles may be another, each with its v²/(ω − z) that counts as
     // v²/kT: of the conductance there the square root is taken.  A pole that was lost, or counted twice, leaves its
     // peak in what should be smooth.
     for (int k = 0; k < COMPARED; ++k)
         for (int sign = 0; sign < 2; ++sign) {
-            std::vector<double> weights = k < CHECKS ? plan.at_checks[sign * CHECKS + k] : plan.weights_at(sign == 0 ? checks[k] : -checks[k]);
-            double share = k < CHECKS ? shares[k] : std::sqrt(shares[k]);
+            std::vector<double> weights = plan.weights_at(sign == 0 ? checks[k] : -checks[k]);
+            double share = plan.reaches_gap() ? plan.share(checks[k]) : k < CHECKS ? shares[k] : std::sqrt(shares[k]);
             for (int c = 0; c < 4; ++c)
                 rough = detail::largest(rough, std::abs(polynomial(weights, c) - at_checks[c][sign * COMPARED + k]) * share);
         }
+    for (int sign = 0; sign < 2 && above > 0; ++sign) {
+        std::vector<double> weights = plan.weights_at_check_above(sign);
+        for (int c = 0; c < 4; ++c)
+            over_gap = detail::largest(over_gap, std::abs(polynomial(weights, c) - at_check_above[c][sign]) * plan.share_above / above);
+    }
     if (model != nullptr) *model = {m, list, {std::move(found.poles), {0, 0}, std::move(found.order), found.paired, true}, std::move(of)};
-    return detail::largest(of_model, ROUGHNESS * rough);
+    return std::max({of_model, detail::error_of_samples(plan, of), ROUGHNESS * rough, ROUGHNESS_ABOVE * over_gap});
 }
 
 }  // namespace core

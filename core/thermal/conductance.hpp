@@ -5,7 +5,9 @@
 // (average.hpp).  A few further energies check the model; where it is off by more than the tolerance, M grows.
 #pragma once
 
+#include <map>
 #include <span>
+#include <tuple>
 
 #include "../conductance.hpp"
 #include "../poles/isolated.hpp"
@@ -13,11 +15,6 @@
 
 namespace core {
 
-constexpr int NODES[] = {12, 13, 16, 20, 28, 36, 52, 76, 112, 160};  // numbers of nodes that are tried in turn
-// A wire has a level for so many sites, so a long one begins with more nodes, one for each SITES_FOR_LEAST sites, and goes
-// on to more.  Of 160 sets of 1,000 sites 28 then have no model within the tolerance, and one of the others is 2.3 times as
-// wrong as estimated; with 12 to 36 nodes it was 20 and one, 79 times, of 60 sets.
-constexpr int SITES_FOR_LEAST = 25, SITES_FOR_MOST = 6, MOST_FOR_ALL = 36;
 constexpr double TOLERANCE = 1e-4;                 // estimated error in e²/h above which nodes are added
 // Two models that differ by less than their estimates are as wrong as the geometric mean of both: the estimates
 // are cautious, but models may err together.
@@ -122,30 +119,59 @@ inline void solve_nodes(const ThermalField& field, const EnergyPlan& plan, const
 // Add the data at the checks, once the sets' own are known.
 inline void solve_checks(const ThermalField& field, const EnergyPlan& plan, const double* mu, const SetIndex* sets, int count,
                          SetData* data) {
-    int total = count * COMPARED;
+    int each = COMPARED + plan.samples, total = count * each;
     for (int piece = 0; piece < total; piece += REAL_LANES) {
         Terms<CheckReal> terms{};
         LaneLeads<CheckReal> leads{};
         for (int l = 0; l < REAL_LANES; ++l) {
-            int pair = std::min(piece + l, total - 1), set = pair / COMPARED, check = pair % COMPARED;
-            bool shared = check < CHECKS;
-            double omega = shared ? plan.omega[plan.nodes + check] : data[set].sought[check - CHECKS];
-            Pairing p = shared ? field.pairing[plan.nodes + check] : Pairing(field.of, omega);
+            int pair = std::min(piece + l, total - 1), set = pair / each, check = pair % each;
+            int shared = check < CHECKS ? check : check - SOUGHT;
+            bool own = CHECKS <= check && check < COMPARED;
+            double omega = own ? data[set].sought[check - CHECKS] : plan.omega[plan.nodes + shared];
+            Pairing p = own ? Pairing(field.of, omega) : field.pairing[plan.nodes + shared];
             terms.kinetic.set(l, field.kinetic(mu[sets[set].mu]));
             terms.normal.set(l, p.normal / field.hop), terms.anomalous.set(l, p.anomalous / field.hop);
-            leads.set(l, shared ? field.leads[plan.nodes + check] : lead_self_energy(field.of, field.B, omega));
+            leads.set(l, own ? lead_self_energy(field.of, field.B, omega) : field.leads[plan.nodes + shared]);
         }
         auto ends = eliminate_inner_sites(view(field.wire), terms);
         auto G = attach_leads(ends, leads);
         auto bare = lossless_conductances_of_ends<CheckReal>(G, leads);
         for (int l = 0; l < REAL_LANES && piece + l < total; ++l) {
-            SetData& of = data[(piece + l) / COMPARED];
-            int check = (piece + l) % COMPARED;
+            SetData& of = data[(piece + l) / each];
+            int check = (piece + l) % each;
             of.growth = largest(of.growth, ends.growth[l]);
             of.bare[plan.nodes + check] = lane_of(bare, l);
+            if (check >= COMPARED) continue;
             auto& green = of.green[check];
             for (int k = 0; k < 36; ++k) green.entry[k] = {G.entry[k].re[l] * (1 / field.hop), G.entry[k].im[l] * (1 / field.hop)};
             to_chiral(green);
+        }
+    }
+}
+
+// Add the conductances above the gap.
+inline void solve_above(const ThermalField& field, const EnergyPlan& plan, const double* mu, const SetIndex* sets, int count,
+                        SetData* data) {
+    using A = ComplexArithmetic;
+    int energies = int(plan.above.size()), total = count * energies;
+    std::vector<RetardedPairing> pairing;
+    std::vector<LeadSelfEnergy> leads;
+    for (double w : plan.above) pairing.push_back(RetardedPairing(field.of, w)), leads.push_back(lead_self_energy(field.of, field.B, w));
+    for (int piece = 0; piece < total; piece += A::LANES) {
+        Terms<A::N> terms{};
+        A::Leads lanes{};
+        for (int l = 0; l < A::LANES; ++l) {
+            int pair = std::min(piece + l, total - 1), e = pair % energies;
+            A::set_kinetic(terms, l, field.kinetic(mu[sets[pair / energies].mu]));
+            A::set(terms, l, pairing[e], field.hop);
+            lanes.set(l, leads[e]);
+        }
+        auto ends = eliminate_inner_sites<A::N, A::Block>(view(field.wire), terms);
+        auto bare = A::conductances(attach_leads(ends, lanes), lanes);
+        for (int l = 0; l < A::LANES && piece + l < total; ++l) {
+            SetData& of = data[(piece + l) / energies];
+            of.growth = largest(of.growth, ends.growth[l]);
+            of.bare[plan.nodes_below() + COMPARED + (piece + l) % energies] = lane_of(bare, l);
         }
     }
 }
@@ -156,7 +182,10 @@ inline void average_sets(const Grid& grid, const EnergyPlan& plan, const SetInde
                          double* out, double* estimate, SetModel* models) {
     static thread_local std::vector<SetData> room(SETS);
     std::span<SetData> data(room.data(), count);
-    for (SetData& of : data) of.isolated.resize(plan.nodes), of.bare.resize(plan.nodes + COMPARED), of.growth = 0.0;
+    for (SetData& of : data) {
+        of.isolated.resize(plan.nodes), of.growth = 0.0;
+        of.bare.resize(plan.nodes_below() + COMPARED + plan.above.size());
+    }
     std::vector<ThermalField> fields;
     std::vector<int> starts;
     for (int first = 0; first < count; ++first)
@@ -166,14 +195,15 @@ inline void average_sets(const Grid& grid, const EnergyPlan& plan, const SetInde
         }
     starts.push_back(count);
     for (size_t k = 0; k < fields.size(); ++k)
-        solve_nodes(fields[k], plan, grid.mu, sets + starts[k], starts[k + 1] - starts[k], &data[starts[k]]);
+        solve_nodes(fields[k], plan, grid.mu, sets + starts[k], starts[k + 1] - starts[k], &data[starts[k]]),
+            solve_above(fields[k], plan, grid.mu, sets + starts[k], starts[k + 1] - starts[k], &data[starts[k]]);
     std::vector<const NodeData*> nodes;
     for (const SetData& of : data) nodes.push_back(of.isolated.data());
     std::vector<LevelList> levels(count);
     wire_levels(plan.omega.data(), plan.nodes, nodes, levels.data());
     for (size_t k = 0; k < fields.size(); ++k) {
         const ThermalField& field = fields[k];
-        for (int i = starts[k]; i < starts[k + 1]; ++i) dense_energies(levels[i], field.hop, plan.window, data[i].sought);
+        for (int i = starts[k]; i < starts[k + 1]; ++i) dense_energies(levels[i], field.hop, plan, data[i].sought);
         solve_checks(field, plan, grid.mu, sets + starts[k], starts[k + 1] - starts[k], &data[starts[k]]);
         Leads leads = field.around_the_window(plan);
         for (int i = starts[k]; i < starts[k + 1]; ++i) {
@@ -188,6 +218,28 @@ inline void average_sets(const Grid& grid, const EnergyPlan& plan, const SetInde
 
 }  // namespace detail
 
+// The plans of all wires in one round: one for all whose window ends below the gap, others for those who differ.
+class EnergyPlans {
+    std::map<std::tuple<int, double, double>, EnergyPlan> plans;
+    std::vector<const EnergyPlan*> of_wire;
+
+public:
+    EnergyPlans(const Grid& grid, double kT, int round) {
+        for (int w = 0; w < grid.wire_count; ++w) {
+            double delta0 = grid.wires[w].delta0;
+            Reach reach = reach_of(grid.omega, grid.omega_count, kT, delta0);
+            int nodes = nodes_in_round(round, reach, grid.wires[w]);
+            of_wire.push_back(nullptr);
+            if (nodes == 0) continue;
+            bool below = reach == Reach::WINDOW;
+            double resolved = reach == Reach::HOT_GAP ? resolved_up_to(grid.wires[w], nodes) : LAST;
+            std::tuple key(nodes, below ? INFINITY : delta0, resolved);
+            of_wire.back() = &plans.try_emplace(key, grid.omega, grid.omega_count, kT, nodes, reach, delta0, resolved).first->second;
+        }
+    }
+    const EnergyPlan* of(int wire) const { return of_wire[wire]; }
+};
+
 // Fill G, shape (wire, mu, B, bias, 4), its estimated error and how many energies each set took, (wire, mu, B).
 // grid.omega holds the biases.  Where `models` is given, it is filled with the models that G is from.
 inline void thermal_conductance(const Grid& grid, double kT, double tolerance, double growth_limit, double* G, double* error,
@@ -197,28 +249,30 @@ inline void thermal_conductance(const Grid& grid, double kT, double tolerance, d
     std::vector<std::vector<double>> earlier;
     if (models != nullptr) models->clear(), models->resize(total);
     auto place = [&](const SetIndex& s) { return (size_t(s.wire) * grid.mu_count + s.mu) * grid.B_count + s.field; };
-    for (int nodes : NODES) {
-        int sites = grid.wires->sites;
-        if (nodes * SITES_FOR_LEAST < sites || nodes > std::max(MOST_FOR_ALL, sites / SITES_FOR_MOST)) continue;
+    for (int round = 0; round < ROUNDS_OF_NODES; ++round) {
+        if (std::all_of(error, error + total, [&](double of) { return of <= tolerance; })) return;
+        const EnergyPlans plans(grid, kT, round);
         std::vector<SetIndex> sets;
         for (int w = 0; w < grid.wire_count; ++w)
             for (int f = 0; f < grid.B_count; ++f)
                 for (int m = 0; m < grid.mu_count; ++m)
-                    if (error[place({w, f, m})] > tolerance) sets.push_back({w, f, m});
-        if (sets.empty()) return;
-        EnergyPlan plan(grid.omega, grid.omega_count, kT, nodes);
+                    if (plans.of(w) != nullptr && !(error[place({w, f, m})] <= tolerance)) sets.push_back({w, f, m});
+        if (sets.empty()) continue;
         std::vector<double> found(total * values, NAN), estimate(total, INFINITY);
         std::vector<SetModel> tried(models == nullptr ? 0 : total);
-        in_parallel(int((sets.size() + SETS - 1) / SETS), stop, [&](int task) {
-            int first = task * SETS, count = std::min(SETS, int(sets.size()) - first);
-            detail::average_sets(grid, plan, &sets[first], count, growth_limit, found.data(), estimate.data(),
-                                 models == nullptr ? nullptr : tried.data());
+        std::vector<int> starts;  // of tasks, of up to SETS sets of one plan
+        for (int k = 0; k < int(sets.size()); ++k)
+            if (k == 0 || k - starts.back() == SETS || plans.of(sets[k].wire) != plans.of(sets[k - 1].wire)) starts.push_back(k);
+        starts.push_back(int(sets.size()));
+        in_parallel(int(starts.size()) - 1, stop, [&](int task) {
+            detail::average_sets(grid, *plans.of(sets[starts[task]].wire), &sets[starts[task]], starts[task + 1] - starts[task],
+                                 growth_limit, found.data(), estimate.data(), models == nullptr ? nullptr : tried.data());
         });
         if (stop.asked()) return;
         for (const SetIndex& set : sets) {
             size_t at = place(set);
             double* now = &found[at * values];
-            energies[at] += nodes + COMPARED;
+            energies[at] += plans.of(set.wire)->energies();
             bool numbers = std::all_of(now, now + values, [](double value) { return std::isfinite(value); });
             if (!numbers || !std::isfinite(estimate[at])) {
                 estimate[at] = INFINITY;

@@ -14,30 +14,30 @@
 namespace core {
 
 constexpr int RUN = 4;  // gaps between the levels of a run
-constexpr double ELSEWHERE[SOUGHT] = {0.382, 0.764};  // where sets of fewer levels are checked: shares of the window, as angles
+constexpr double ELSEWHERE[SOUGHT] = {0.382, 0.764};  // where sets of fewer levels are checked: shares of the window, as places
 
-// Distances are measured in θ, ω = W sin θ, in which the nodes are as far from each other.
-inline void dense_energies(const LevelList& levels, double hop, double window, double (&out)[SOUGHT]) {
-    std::vector<double> angles;
+// Distances are measured in θ, sin θ = place(ω), in which the nodes are as far from each other.
+inline void dense_energies(const LevelList& levels, double hop, const EnergyPlan& plan, double (&out)[SOUGHT]) {
+    std::vector<double> places;
     for (const Level& level : levels)
-        if (level.E < window && hop * detail::square(level.w, 8) > INVISIBLE) angles.push_back(std::asin(level.E / window));
-    std::sort(angles.begin(), angles.end());
-    int count = int(angles.size());
+        if (level.E < std::min(plan.window, plan.pole_limit()) && hop * detail::square(level.w, 8) > INVISIBLE) places.push_back(plan.place(level.E));
+    std::sort(places.begin(), places.end());
+    int count = int(places.size());
     std::vector<bool> taken(count, false);
     for (int k = 0; k < SOUGHT; ++k) {
-        double least = INFINITY, at = ELSEWHERE[k] * std::numbers::pi / 2;
+        double least = INFINITY, at = ELSEWHERE[k];
         int first = -1;
         for (int n = 0; n < count - RUN; ++n) {
-            double span = angles[n + RUN] - angles[n];
+            double span = places[n + RUN] - places[n];
             if (span < least && !taken[n] && !taken[n + RUN]) least = span, first = n;
         }
         if (first >= 0) {
             double widest = -1.0;
             for (int n = first; n < first + RUN; ++n)
-                if (angles[n + 1] - angles[n] > widest) widest = angles[n + 1] - angles[n], at = (angles[n] + angles[n + 1]) / 2;
+                if (places[n + 1] - places[n] > widest) widest = places[n + 1] - places[n], at = (places[n] + places[n + 1]) / 2;
             for (int n = first; n <= first + RUN; ++n) taken[n] = true;
         }
-        out[k] = window * std::sin(at);
+        out[k] = plan.energy(at);
     }
 }
 

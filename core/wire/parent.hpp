@@ -11,7 +11,7 @@ struct Pairing {
     double normal, anomalous, normal_slope, anomalous_slope;
 
     Pairing(const Wire& wire, double omega) {
-        double root = std::sqrt(wire.delta0 * wire.delta0 - omega * omega), cube = root * root * root;
+        double root = std::sqrt((wire.delta0 - omega) * (wire.delta0 + omega)), cube = root * root * root;
         normal = omega + wire.gamma * omega / root;
         anomalous = wire.gamma * wire.delta0 / root;
         normal_slope = 1 + wire.gamma / root + wire.gamma * omega * omega / cube;

@@ -24,7 +24,7 @@ pytestmark = [
 ]
 
 KT = BOLTZMANN * TEMPERATURE
-DONE, INEXACT, BAD_COUNT, NOT_FINITE, BAD_WIRE, BAD_TEMPERATURE = range(6)
+DONE, INEXACT, BAD_COUNT, NOT_FINITE, BAD_WIRE, BAD_TEMPERATURE, BAD_BIAS = range(7)
 RANDOM = [random_wire(seed) for seed in range(25)]
 
 
@@ -135,7 +135,7 @@ def test_the_status_says_how_it_went(wasm):
         (average(leaky), BAD_WIRE),
         (request("reflection_determinant", [leaky], ([0.2], [0.3]), [2]), BAD_WIRE),
         (average(kT=0.0), BAD_TEMPERATURE),
-        (average(kT=10 * KT), BAD_TEMPERATURE),
+        (average(bias=(0.12,)), BAD_BIAS),
     ]
     answers = answers_of(wasm, [asked for asked, _ in expected])
     assert [status for status, _ in answers] == [status for _, status in expected]

@@ -11,6 +11,7 @@ from disorder_landscape.model.parameters import FloatArray
 TOLERANCE: float
 FLOOR: float
 REACH: float
+BELOW_GAP: float
 NODES: list[int]
 COMPARED: int
 internals: ModuleType

@@ -173,8 +173,8 @@ def thermal_conductance(
 ) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
     """Return thermal averages, their estimated error and how many energies each set took.
 
-    The thermal window, REACH kT beyond each |bias|, must end below the gap, and the wires must have
-    no dissipation. Nodes are added where the error is more than the tolerance in e²/h.
+    The biases must be below the gap, and the wires must have no dissipation. Nodes are added where
+    the error is more than the tolerance in e²/h.
 
     Returns
     -------

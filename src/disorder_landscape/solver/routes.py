@@ -19,8 +19,8 @@ from disorder_landscape.solver import compiled
 from disorder_landscape.solver.quadrature import ThermalConductance, thermal_quadrature
 
 SOLVERS = ("fast", "kwant")
-BELOW_GAP = 0.98
-"""Part of the gap up to which the thermal window is taken as rational in energy."""
+BELOW_GAP: float = compiled.core.BELOW_GAP
+"""Part of the gap up to which the thermal window is rational in energy all over."""
 BLOCK_ENERGIES = {"fast": 2**18, "tilted": 2**14, "kwant": 2**8}
 """Energies that are solved at a time: about 16 MB and one second."""
 BLOCK_SETS = {"fast": 2**12, "tilted": 2**5}
@@ -137,9 +137,9 @@ def thermal_average(
 ) -> ThermalConductance:
     """Return the exact thermal average, its estimated error and the number of energies it took.
 
-    Rational in energy and in closed form where the thermal window stays below the gap; by adaptive
-    quadrature where it does not or the wire has dissipation, and for the rare set of which no
-    rational model within the tolerance is found.
+    In closed form; by adaptive quadrature where the wire has dissipation, or the field is tilted
+    and the thermal window reaches the gap, and for the rare set of which no model within the
+    tolerance is found.
     """
 
     def solve(some: Sequence[Nanowire], fields: FloatArray) -> ThermalConductance:
@@ -157,7 +157,7 @@ def _average(
     theta: float,
 ) -> ThermalConductance:
     """Return the average of wires whose gap does not depend on the field."""
-    if not closed_form_reaches(wires, bias, temperature):
+    if not closed_form_reaches(wires, bias, temperature, theta):
         return thermal_quadrature(wires, mu, B, bias, temperature, theta=theta)
     G, error, energies = closed_form(wires, mu, B, bias, temperature, theta)
     for w, m, f in np.argwhere(~(error <= compiled.core.TOLERANCE)):
@@ -173,12 +173,22 @@ def thermal_window(bias: FloatArray, temperature: float) -> float:
     return float(abs(bias).max() + compiled.core.REACH * BOLTZMANN * temperature)
 
 
-def closed_form_reaches(wires: Sequence[Nanowire], bias: FloatArray, temperature: float) -> bool:
-    """Return whether the window stays below the gap of wires that all lack dissipation."""
-    lossless = all(w.dissipation == 0 for w in wires)
-    return lossless and thermal_window(bias, temperature) <= BELOW_GAP * min(
-        w.delta0 for w in wires
-    )
+def stays_below_gap(wires: Sequence[Nanowire], bias: FloatArray, temperature: float) -> bool:
+    """Return whether the thermal window stays below the gap of wires that all lack dissipation."""
+    gap = min(w.delta0 for w in wires)
+    return lossless(wires) and thermal_window(bias, temperature) <= BELOW_GAP * gap
+
+
+def lossless(wires: Sequence[Nanowire]) -> bool:
+    """Return whether all of some wires lack dissipation."""
+    return all(w.dissipation == 0 for w in wires)
+
+
+def closed_form_reaches(
+    wires: Sequence[Nanowire], bias: FloatArray, temperature: float, theta: float
+) -> bool:
+    """Return whether averages of some wires are taken in closed form."""
+    return lossless(wires) if theta == 0 else stays_below_gap(wires, bias, temperature)
 
 
 def closed_form(
@@ -191,8 +201,7 @@ def closed_form(
 ) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
     """Return the average of a rational model, its error (infinite without one) and energies.
 
-    The window must stay below the gap, and the wires have no dissipation; shapes are those of
-    `thermal_average`.
+    Where `closed_form_reaches`; shapes are those of `thermal_average`.
     """
     if theta == 0:
         return compiled.thermal_conductance(wires, mu, B, bias, temperature)
