@@ -23,7 +23,7 @@ bool all_finite(const double* x, size_t count) {
 }
 
 bool sound(const Wire& w) {
-    return w.hopping > 0 && w.delta0 > 0 && w.gamma >= 0 && w.dissipation >= 0;
+    return w.hopping > 0 && w.delta0 > 0 && w.gamma >= 0 && w.dissipation >= 0 && w.parent_dissipation >= 0;
 }
 
 int status_of(bool exact) { return exact ? NANOWIRE_DONE : NANOWIRE_INEXACT; }
@@ -57,7 +57,10 @@ struct Request {
 
     size_t points() const { return wires.size() * grid.mu_count * grid.B_count; }
     bool without_dissipation() const {
-        return std::ranges::all_of(wires, [](const Wire& w) { return w.dissipation == 0; });
+        return std::ranges::all_of(wires, [](const Wire& w) { return w.dissipation == 0 && w.parent_dissipation == 0; });
+    }
+    bool evenly_broadened() const {
+        return std::ranges::all_of(wires, [](const Wire& w) { return w.dissipation == w.parent_dissipation; });
     }
     bool below_the_gap() const {
         double largest = window_of(grid.omega, grid.omega_count, 0.0);
@@ -90,7 +93,7 @@ int nanowire_thermal_conductance(int wires, int sites, const double* V, const do
     Request of(wires, sites, V, parameters, mu_count, mu, B_count, B, bias_count, bias);
     if (of.status != NANOWIRE_DONE) return of.status;
     if (!std::isfinite(kT) || !std::isfinite(tolerance)) return NANOWIRE_NOT_FINITE;
-    if (!of.without_dissipation()) return NANOWIRE_BAD_WIRE;
+    if (!of.evenly_broadened()) return NANOWIRE_BAD_WIRE;
     if (!(kT > 0)) return NANOWIRE_BAD_TEMPERATURE;
     if (!of.below_the_gap()) return NANOWIRE_BAD_BIAS;
     Stop never;

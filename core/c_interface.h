@@ -10,7 +10,7 @@
  *
  *     V           (wire, site), with the barriers
  *     parameters  (wire, NANOWIRE_PARAMETERS): t, α/2a, ½gμ_B, γ, Δ₀; of the leads µ, α/2a and
- *                 ½gμ_B; dissipation
+ *                 ½gμ_B; dissipation of the wire and of its parent
  *
  * which is what `handed_over` of solver/compiled.py returns.  Conductances come in the order G_LL,
  * G_RR, G_LR, G_RL.
@@ -29,7 +29,7 @@
 #define NANOWIRE_NOEXCEPT
 #endif
 
-enum { NANOWIRE_PARAMETERS = 9 };
+enum { NANOWIRE_PARAMETERS = 10 };
 
 enum nanowire_status {
     NANOWIRE_DONE = 0,
@@ -39,7 +39,8 @@ enum nanowire_status {
     NANOWIRE_BAD_COUNT = 2,
     /* … a number that goes in is none, or infinite; */
     NANOWIRE_NOT_FINITE = 3,
-    /* … t ≤ 0, Δ₀ ≤ 0, γ < 0 or dissipation < 0, or dissipation where there may be none; */
+    /* … t ≤ 0, Δ₀ ≤ 0, γ < 0 or dissipation < 0, or dissipation where there may
+     * be none, or none other than the parent's; */
     NANOWIRE_BAD_WIRE = 4,
     /* … kT ≤ 0; */
     NANOWIRE_BAD_TEMPERATURE = 5,
@@ -62,7 +63,7 @@ NANOWIRE_API int nanowire_conductance(int wires, int sites, const double* V,
                                       const double* omega, double* G) NANOWIRE_NOEXCEPT;
 
 /*
- * Their thermal averages, of wires without dissipation.
+ * Their thermal averages, of wires that are as dissipative as their parents.
  *
  *     G      (wire, mu, B, bias, 4)
  *     error  (wire, mu, B), estimated, of the worst of a point; infinite where none was found

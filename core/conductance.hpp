@@ -57,7 +57,7 @@ struct RealArithmetic {
     using Block = Symmetric4<N>;
     using Leads = LaneLeads<R>;
     static constexpr int LANES = REAL_LANES;
-    static bool takes(const Wire& w, double omega) { return w.dissipation == 0 && std::abs(omega) < w.delta0; }
+    static bool takes(const Wire& w, double omega) { return w.dissipation == 0 && w.parent_dissipation == 0 && std::abs(omega) < w.delta0; }
     static LeadSelfEnergy leads(const Wire& w, double B, double omega, double) { return self_energy_of_leads(w, B, omega); }
     static void set(Terms<N>& t, int lane, const Pairing& p, double hop) {
         t.normal.set(lane, p.normal / hop);

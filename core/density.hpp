@@ -55,11 +55,10 @@ inline void local_green(const Grid& grid, const double* y, const LeadSelfEnergy*
     double hop = wire.rotated_hopping();
     std::vector<RetardedPairing> pairing;
     for (int e = 0; e < energies; ++e) {
-        Wire lossless = wire;
-        lossless.dissipation = 0;
-        double x = grid.omega[e];
-        pairing.push_back(y[e] > 0 ? pairing_at(wire, {x, y[e]}) : RetardedPairing(lossless, x));
-        pairing.back().normal = pairing.back().normal + Complex<double>(0.0, wire.dissipation);
+        Amplitude z(grid.omega[e], y[e]);
+        bool real = y[e] == 0;
+        pairing.push_back(real ? RetardedPairing(wire, z.real())
+                               : RetardedPairing(wire, z + Amplitude(0, wire.dissipation), z + Amplitude(0, wire.parent_dissipation)));
     }
     in_parallel(grid.mu_count * grid.B_count, stop, [&](int task) {
         int m = task / grid.B_count, f = task % grid.B_count;

@@ -8,13 +8,6 @@
 
 namespace core {
 
-// ω − Σ(ω) of parent.hpp at z = x + iy, |x| < Δ₀, y > 0.
-inline RetardedPairing pairing_at(const Wire& wire, Amplitude z) {
-    Amplitude over = wire.gamma / std::sqrt(wire.delta0 * wire.delta0 - z * z);
-    Amplitude normal = z + z * over, anomalous = wire.delta0 * over;
-    return {{normal.real(), normal.imag()}, {anomalous.real(), anomalous.imag()}};
-}
-
 // Fill out, shape (wire, B, mu, z, 8, 8), with G in the rotated frame, left end first, in 1/meV.
 // The energies are x + iy, where x is the grid's omega.
 inline void isolated_ends(const Grid& grid, const double* y, Amplitude* out, Stop& stop) {
@@ -25,7 +18,10 @@ inline void isolated_ends(const Grid& grid, const double* y, Amplitude* out, Sto
         RotatedWire turned(wire, grid.B[task % grid.B_count], grid.theta);
         double hop = wire.rotated_hopping();
         std::vector<RetardedPairing> pairing;
-        for (int e = 0; e < grid.omega_count; ++e) pairing.push_back(pairing_at(wire, {grid.omega[e], y[e]}));
+        for (int e = 0; e < grid.omega_count; ++e) {
+            Amplitude z(grid.omega[e], y[e]);
+            pairing.push_back(RetardedPairing(wire, z, z));
+        }
         Amplitude* to = out + size_t(task) * pairs * 64;
         for (int first = 0; first < pairs && !stop.asked(); first += A::LANES) {
             Terms<A::N> terms;

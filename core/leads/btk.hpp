@@ -18,6 +18,14 @@ struct Conductances {
     N at[2][4];  // sign of ω (+, −), then LL, RR, LR, RL, in e²/h
 };
 
+template <class R>
+inline Conductances<double> lane_of(const Conductances<R>& G, int lane) {
+    Conductances<double> out;
+    for (int sign = 0; sign < 2; ++sign)
+        for (int k = 0; k < 4; ++k) out.at[sign][k] = G.at[sign][k][lane];
+    return out;
+}
+
 template <class N>
 CORE_INLINE Conductances<N> conductances(const N (&P)[4][4], const N (&net)[4]) {
     Conductances<N> G;

@@ -23,17 +23,33 @@ CORE_INLINE void turn_chiral(const N (&m)[8], N (&row)[8]) {
 }
 
 template <class N>
-inline void to_chiral(Symmetric8<N>& M) {
+CORE_INLINE void turn_to_sites(const N (&row)[8], N (&m)[8]) {
+    const double half = 0.70710678118654752440;
+    for (int end = 0; end < 2; ++end) {
+        N* of = m + 4 * end;
+        of[0] = half * (row[5 + 2 * end] + row[2 * end + 1]), of[3] = half * (row[5 + 2 * end] - row[2 * end + 1]);
+        of[1] = half * (row[2 * end] + row[4 + 2 * end]), of[2] = half * (row[2 * end] - row[4 + 2 * end]);
+    }
+}
+
+// Turn both sides of a matrix by turn_chiral or turn_to_sites.
+template <class N, class Turn>
+inline void turn_both(Symmetric8<N>& M, Turn turn) {
     N half[8][8], row[8], turned[8];
     for (int i = 0; i < 8; ++i) {
         for (int j = 0; j < 8; ++j) row[j] = M(i, j);
-        turn_chiral(row, half[i]);
+        turn(row, half[i]);
     }
     for (int j = 0; j < 8; ++j) {
         for (int i = 0; i < 8; ++i) row[i] = half[i][j];
-        turn_chiral(row, turned);
+        turn(row, turned);
         for (int i = 0; i <= j; ++i) M(i, j) = turned[i];
     }
 }
+
+template <class N>
+inline void to_chiral(Symmetric8<N>& M) { turn_both(M, turn_chiral<N>); }
+template <class N>
+inline void to_sites(Symmetric8<N>& M) { turn_both(M, turn_to_sites<N>); }
 
 }  // namespace core

@@ -67,6 +67,16 @@ struct Cubic {
                         of[1][end][i][j] + z * (2.0 * of[2][end][i][j] + 3.0 * z * of[3][end][i][j]);
         return M;
     }
+    // The cubic of which the value at z is this one's at z + by.
+    Cubic shifted(Amplitude by) const {
+        Cubic found = *this;
+        for (int round = 0; round < 3; ++round)
+            for (int power = 2; power >= round; --power)
+                for (int end = 0; end < 2; ++end)
+                    for (int i = 0; i < 4; ++i)
+                        for (int j = 0; j < 4; ++j) found.of[power][end][i][j] += by * found.of[power + 1][end][i][j];
+        return found;
+    }
 };
 
 // Invert an n×n matrix in place by Gauss–Jordan elimination with row pivoting.
@@ -117,6 +127,13 @@ struct Leads {
             for (int end = 0; end < 2; ++end)
                 for (int i = 0; i < 4; ++i)
                     for (int j = 0; j < 4; ++j) conjugate.of[power][end][i][j] = std::conj(inverse.of[power][end][i][j]);
+    }
+    // The same as functions of the energy z + iΓ that a wire has whose levels are broadened; S(z*)* as one of z* + iΓ, conjugated.
+    Leads broadened(double width) const {
+        Leads found = *this;
+        found.gamma = gamma.shifted({0, -width}), found.inverse = inverse.shifted({0, -width});
+        found.conjugate = conjugate.shifted({0, width});
+        return found;
     }
 };
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "dense.hpp"
+#include "field.hpp"
 #include "trigamma.hpp"
 
 namespace core {
@@ -80,11 +81,11 @@ inline double share_that_counts(double omega, double kT, const PoleTerms& terms)
 
 // The largest difference of the model's G and the solver's at the checks, in 1/meV.
 inline double mismatch(const double (&checks)[COMPARED], const double (&shares)[COMPARED], const Leads& leads,
-                       const SetData& data, Batch& b) {
+                       double width, const SetData& data, Batch& b) {
     double worst = 0.0;
     for (int first = 0; first < COMPARED; first += POLES) {
-        b.z = PoleComplex(0.0);
-        for (int l = 0; l < POLES; ++l) Batch::set(b.z, l, checks[std::min(first + l, COMPARED - 1)]);
+        b.z = PoleComplex(PoleReal(0.0), PoleReal(width));
+        for (int l = 0; l < POLES; ++l) b.z.re.set(l, checks[std::min(first + l, COMPARED - 1)]);
         const auto G = dressed_green(leads.inverse, b);
         for (int i = 0; i < 8; ++i)
             for (int j = i; j < 8; ++j) {
@@ -96,6 +97,25 @@ inline double mismatch(const double (&checks)[COMPARED], const double (&shares)[
             }
     }
     return std::sqrt(worst);
+}
+
+// The conductances that a model has at the nodes, where levels are broadened.
+inline std::vector<Conductances<double>> conductances_at_nodes(const EnergyPlan& plan, const ThermalField& field, const Leads& leads, Batch& b) {
+    std::vector<Conductances<double>> found(plan.nodes);
+    for (int first = 0; first < plan.nodes; first += POLES) {
+        LaneLeads<PoleReal> lanes{};
+        b.z = PoleComplex(PoleReal(0.0), PoleReal(field.of.dissipation));
+        for (int l = 0; l < POLES; ++l) {
+            int k = std::min(first + l, plan.nodes - 1);
+            b.z.re.set(l, plan.omega[k]), lanes.set(l, field.leads[k]);
+        }
+        auto G = dressed_green(leads.inverse, b);
+        to_sites(G);
+        for (auto& entry : G.entry) entry = entry * PoleReal(field.hop);
+        const auto bare = lossy_conductances_of_ends<PoleReal>(G, lanes);
+        for (int l = 0; l < POLES && first + l < plan.nodes; ++l) found[first + l] = lane_of(bare, l);
+    }
+    return found;
 }
 
 // The error that the samples next to the gap make.  Between them lie Lorentzians, of which they sum all but a part
@@ -125,15 +145,16 @@ inline double error_of_samples(const EnergyPlan& plan, const RationalConductance
 
 // Write the thermal conductances of one set, shape (bias, 4), and its model, if asked for; return the error estimate in
 // e²/h.
-inline double rational_average(const EnergyPlan& plan, double hop, const LevelList& list, const SetData& data,
+inline double rational_average(const EnergyPlan& plan, const detail::ThermalField& field, const LevelList& list, const SetData& data,
                                const Leads& leads, double* out, SetModel* model = nullptr) {
     int m = plan.nodes, pick = plan.picks[1];
+    const double hop = field.hop, width = field.of.dissipation;
     Levels levels(list, plan.window);
     Batch batch(levels);
     Starts starts = start_poles(plan.omega[pick], data.isolated[pick].G, plan.pole_limit(), hop, levels, leads);
     Resonances found = find_poles(starts, levels, leads, batch);
     if (!found.whole) return INFINITY;
-    RationalConductances of{conductance_terms(found, leads, batch), {}};
+    RationalConductances of{conductance_terms(found, leads, width, batch), {}};
     const PoleTerms& terms = of.poles;
 
     double checks[COMPARED];
@@ -158,7 +179,9 @@ inline double rational_average(const EnergyPlan& plan, double hop, const LevelLi
         }
     };
     int below = plan.nodes_below();
-    rest(m, plan.omega.data(), &data.bare[0], [&](int c, int k, int sign, double value) { of.rest[c][k + sign * below] = value; });
+    std::vector<Conductances<double>> broadened;
+    if (width > 0) broadened = detail::conductances_at_nodes(plan, field, leads, batch);
+    rest(m, plan.omega.data(), width > 0 ? broadened.data() : &data.bare[0], [&](int c, int k, int sign, double value) { of.rest[c][k + sign * below] = value; });
     rest(below - m, &plan.omega[m + CHECKS], &data.bare[m + COMPARED],
          [&](int c, int k, int sign, double value) { of.rest[c][m + k + sign * below] = value; });
     rest(COMPARED, checks, &data.bare[m], [&](int c, int k, int sign, double value) { at_checks[c][k + sign * COMPARED] = value; });
@@ -172,7 +195,7 @@ inline double rational_average(const EnergyPlan& plan, double hop, const LevelLi
 
     double shares[COMPARED], rough = 0.0, over_gap = 0.0;
     for (int k = 0; k < COMPARED; ++k) shares[k] = detail::share_that_counts(checks[k], plan.kT, terms) * plan.share(checks[k]);
-    double of_model = SAFETY * hop * detail::mismatch(checks, shares, leads, data, batch);
+    double of_model = SAFETY * hop * detail::mismatch(checks, shares, leads, width, data, batch);
     // Where levels are dense, the whole pattern of poles may be another, each with its v²/(ω − z) that counts as
     // v²/kT: of the conductance there the square root is taken.  A pole that was lost, or counted twice, leaves its
     // peak in what should be smooth.

@@ -30,50 +30,6 @@ namespace detail {
 
 constexpr int SLOPE_LANES = REGISTER;
 using SlopeReal = Lanes<SLOPE_LANES>;
-using CheckReal = Lanes<REAL_LANES>;
-
-// The leads around the window, from Σ/t' at four energies of which `cubic` inverts the Vandermonde matrix.
-template <class At>
-inline Leads leads_through(const double (&cubic)[CUBIC][CUBIC], double hop, At sigma_at) {
-    EndMatrix at[CUBIC];
-    for (int k = 0; k < CUBIC; ++k) {
-        EndMatrix sigma = on_the_ends(sigma_at(k));
-        Symmetric8<Complex<double>> M;
-        for (int i = 0; i < 8; ++i)
-            for (int j = i; j < 8; ++j) M(i, j) = {sigma(i, j).real() * hop, sigma(i, j).imag() * hop};
-        to_chiral(M);
-        for (int i = 0; i < 8; ++i)
-            for (int j = 0; j < 8; ++j) at[k](i, j) = {M(i, j).re, M(i, j).im};
-    }
-    return Leads(cubic, at);
-}
-
-// One wire and field at the plan's energies.
-struct ThermalField {
-    const Wire& of;
-    double B, hop;
-    RotatedWire wire;
-    std::vector<Pairing> pairing;
-    std::vector<LeadSelfEnergy> leads;
-
-    ThermalField(const Wire& of, double B, const std::vector<double>& omega)
-        : of(of), B(B), hop(of.rotated_hopping()), wire(of, B) {
-        for (double w : omega) pairing.push_back(Pairing(of, w)), leads.push_back(lead_self_energy(of, B, w));
-    }
-    double kinetic(double mu) const { return (2 * of.hopping - mu) / hop; }
-
-    Leads around_the_window(const EnergyPlan& plan) const {
-        return leads_through(plan.cubic, hop, [&](int k) { return leads[plan.picks[k]]; });
-    }
-};
-
-template <class R>
-inline Conductances<double> lane_of(const Conductances<R>& G, int lane) {
-    Conductances<double> out;
-    for (int sign = 0; sign < 2; ++sign)
-        for (int k = 0; k < 4; ++k) out.at[sign][k] = G.at[sign][k][lane];
-    return out;
-}
 
 // Fill the data at the nodes of sets of one wire and field.
 inline void solve_nodes(const ThermalField& field, const EnergyPlan& plan, const double* mu, const SetIndex* sets, int count,
@@ -116,64 +72,64 @@ inline void solve_nodes(const ThermalField& field, const EnergyPlan& plan, const
     }
 }
 
-// Add the data at the checks, once the sets' own are known.
+// Solve each set of one wire and field at `each` energies: at(set, k) are the energy and its leads, and use(set, k, ends, G,
+// bare, lane) takes what is found.
+template <class A, class At, class Use>
+inline void solve_each(const ThermalField& field, const double* mu, const SetIndex* sets, int count, int each, At at, Use use) {
+    int total = count * each;
+    for (int piece = 0; piece < total; piece += A::LANES) {
+        Terms<typename A::N> terms{};
+        typename A::Leads lanes{};
+        for (int l = 0; l < A::LANES; ++l) {
+            int pair = std::min(piece + l, total - 1);
+            auto [omega, leads] = at(pair / each, pair % each);
+            A::set_kinetic(terms, l, field.kinetic(mu[sets[pair / each].mu]));
+            A::set(terms, l, typename A::Pairing(field.of, omega), field.hop);
+            lanes.set(l, leads);
+        }
+        auto ends = eliminate_inner_sites<typename A::N, typename A::Block>(view(field.wire), terms);
+        auto G = attach_leads(ends, lanes);
+        auto bare = A::conductances(G, lanes);
+        for (int l = 0; l < A::LANES && piece + l < total; ++l)
+            use((piece + l) / each, (piece + l) % each, ends.growth[l], lane_of(bare, l), [&](int k) {
+                return Complex<double>(G.entry[k].re[l], G.entry[k].im[l]);
+            });
+    }
+}
+
+// Add the data at the checks and samples, once the sets' own are known.
+template <class A>
 inline void solve_checks(const ThermalField& field, const EnergyPlan& plan, const double* mu, const SetIndex* sets, int count,
                          SetData* data) {
-    int each = COMPARED + plan.samples, total = count * each;
-    for (int piece = 0; piece < total; piece += REAL_LANES) {
-        Terms<CheckReal> terms{};
-        LaneLeads<CheckReal> leads{};
-        for (int l = 0; l < REAL_LANES; ++l) {
-            int pair = std::min(piece + l, total - 1), set = pair / each, check = pair % each;
-            int shared = check < CHECKS ? check : check - SOUGHT;
-            bool own = CHECKS <= check && check < COMPARED;
-            double omega = own ? data[set].sought[check - CHECKS] : plan.omega[plan.nodes + shared];
-            Pairing p = own ? Pairing(field.of, omega) : field.pairing[plan.nodes + shared];
-            terms.kinetic.set(l, field.kinetic(mu[sets[set].mu]));
-            terms.normal.set(l, p.normal / field.hop), terms.anomalous.set(l, p.anomalous / field.hop);
-            leads.set(l, own ? lead_self_energy(field.of, field.B, omega) : field.leads[plan.nodes + shared]);
+    auto at = [&](int set, int k) {
+        if (CHECKS <= k && k < COMPARED) {
+            double omega = data[set].sought[k - CHECKS];
+            return std::pair(omega, lead_self_energy(field.of, field.B, omega));
         }
-        auto ends = eliminate_inner_sites(view(field.wire), terms);
-        auto G = attach_leads(ends, leads);
-        auto bare = lossless_conductances_of_ends<CheckReal>(G, leads);
-        for (int l = 0; l < REAL_LANES && piece + l < total; ++l) {
-            SetData& of = data[(piece + l) / each];
-            int check = (piece + l) % each;
-            of.growth = largest(of.growth, ends.growth[l]);
-            of.bare[plan.nodes + check] = lane_of(bare, l);
-            if (check >= COMPARED) continue;
-            auto& green = of.green[check];
-            for (int k = 0; k < 36; ++k) green.entry[k] = {G.entry[k].re[l] * (1 / field.hop), G.entry[k].im[l] * (1 / field.hop)};
-            to_chiral(green);
-        }
-    }
+        int shared = plan.nodes + (k < CHECKS ? k : k - SOUGHT);
+        return std::pair(plan.omega[shared], field.leads[shared]);
+    };
+    solve_each<A>(field, mu, sets, count, COMPARED + plan.samples, at, [&](int set, int k, double growth, const auto& bare, auto entry) {
+        SetData& of = data[set];
+        of.growth = largest(of.growth, growth);
+        of.bare[plan.nodes + k] = bare;
+        if (k >= COMPARED) return;
+        for (int e = 0; e < 36; ++e) of.green[k].entry[e] = entry(e) * (1 / field.hop);
+        to_chiral(of.green[k]);
+    });
 }
 
 // Add the conductances above the gap.
 inline void solve_above(const ThermalField& field, const EnergyPlan& plan, const double* mu, const SetIndex* sets, int count,
                         SetData* data) {
-    using A = ComplexArithmetic;
-    int energies = int(plan.above.size()), total = count * energies;
-    std::vector<RetardedPairing> pairing;
     std::vector<LeadSelfEnergy> leads;
-    for (double w : plan.above) pairing.push_back(RetardedPairing(field.of, w)), leads.push_back(lead_self_energy(field.of, field.B, w));
-    for (int piece = 0; piece < total; piece += A::LANES) {
-        Terms<A::N> terms{};
-        A::Leads lanes{};
-        for (int l = 0; l < A::LANES; ++l) {
-            int pair = std::min(piece + l, total - 1), e = pair % energies;
-            A::set_kinetic(terms, l, field.kinetic(mu[sets[pair / energies].mu]));
-            A::set(terms, l, pairing[e], field.hop);
-            lanes.set(l, leads[e]);
-        }
-        auto ends = eliminate_inner_sites<A::N, A::Block>(view(field.wire), terms);
-        auto bare = A::conductances(attach_leads(ends, lanes), lanes);
-        for (int l = 0; l < A::LANES && piece + l < total; ++l) {
-            SetData& of = data[(piece + l) / energies];
-            of.growth = largest(of.growth, ends.growth[l]);
-            of.bare[plan.nodes_below() + COMPARED + (piece + l) % energies] = lane_of(bare, l);
-        }
-    }
+    for (double omega : plan.above) leads.push_back(lead_self_energy(field.of, field.B, omega));
+    auto at = [&](int, int k) { return std::pair(plan.above[k], leads[k]); };
+    solve_each<ComplexArithmetic>(field, mu, sets, count, int(plan.above.size()), at,
+                                  [&](int set, int k, double growth, const auto& bare, auto) {
+                                      data[set].growth = largest(data[set].growth, growth);
+                                      data[set].bare[plan.nodes_below() + COMPARED + k] = bare;
+                                  });
 }
 
 // Average up to SETS sets into out (wire, mu, B, bias, 4), estimate (wire, mu, B) and, unless null, models, of the same
@@ -195,8 +151,7 @@ inline void average_sets(const Grid& grid, const EnergyPlan& plan, const SetInde
         }
     starts.push_back(count);
     for (size_t k = 0; k < fields.size(); ++k)
-        solve_nodes(fields[k], plan, grid.mu, sets + starts[k], starts[k + 1] - starts[k], &data[starts[k]]),
-            solve_above(fields[k], plan, grid.mu, sets + starts[k], starts[k + 1] - starts[k], &data[starts[k]]);
+        solve_nodes(fields[k], plan, grid.mu, sets + starts[k], starts[k + 1] - starts[k], &data[starts[k]]);
     std::vector<const NodeData*> nodes;
     for (const SetData& of : data) nodes.push_back(of.isolated.data());
     std::vector<LevelList> levels(count);
@@ -204,13 +159,15 @@ inline void average_sets(const Grid& grid, const EnergyPlan& plan, const SetInde
     for (size_t k = 0; k < fields.size(); ++k) {
         const ThermalField& field = fields[k];
         for (int i = starts[k]; i < starts[k + 1]; ++i) dense_energies(levels[i], field.hop, plan, data[i].sought);
-        solve_checks(field, plan, grid.mu, sets + starts[k], starts[k + 1] - starts[k], &data[starts[k]]);
-        Leads leads = field.around_the_window(plan);
+        auto solve = [&](auto solve_some) { solve_some(field, plan, grid.mu, sets + starts[k], starts[k + 1] - starts[k], &data[starts[k]]); };
+        solve(field.of.dissipation > 0 ? solve_checks<ComplexArithmetic> : solve_checks<RealArithmetic>);
+        solve(solve_above);
+        const Leads leads = field.around_the_window(plan).broadened(field.of.dissipation);
         for (int i = starts[k]; i < starts[k + 1]; ++i) {
             size_t at = (size_t(sets[i].wire) * grid.mu_count + sets[i].mu) * grid.B_count + sets[i].field;
             estimate[at] = INFINITY;
             if (!levels[i].empty() && data[i].growth < growth_limit)
-                estimate[at] = rational_average(plan, field.hop, levels[i], data[i], leads, out + at * plan.biases * 4,
+                estimate[at] = rational_average(plan, field, levels[i], data[i], leads, out + at * plan.biases * 4,
                                                 models == nullptr ? nullptr : models + at);
         }
     }

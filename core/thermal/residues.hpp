@@ -7,6 +7,9 @@
 //
 // and the thermal average of every term has a closed form (trigamma.hpp).  As G_iso(z*)* is G_iso(z),
 // [G(z*)]* = S̄ M̄⁻¹ S̄ − S̄ with S̄(z) = S(z*)* and M̄ = S̄ − G_iso(z) (dressing.hpp).
+//
+// Where the levels of wire and parent are broadened by Γ, G_iso is taken at z + iΓ, and its conjugate at z − iΓ.  What
+// comes in and is absorbed is −2 Im Tr ΓG less what comes back: with that, no sum over probabilities is needed.
 #pragma once
 
 #include "../leads/btk.hpp"
@@ -47,15 +50,18 @@ inline void split_channels(const Ends8& y, Ends8 (&c)[CHANNELS]) {
         }
 }
 
-// The residues of the conductances of POLES poles.
-inline Conductances<PoleComplex> residues(const Leads& leads, Batch& b) {
-    Ends8 v, y, c[CHANNELS], f[CHANNELS];
+// The residues of the conductances of POLES poles, at b.z = z + iΓ of a wire with levels broadened by Γ.
+inline Conductances<PoleComplex> residues(const Leads& leads, double width, Batch& b) {
+    Ends8 v, y, c[CHANNELS], f[CHANNELS], same[CHANNELS];
     b.S.fill(leads.inverse, b.z);
     b.S.multiply(b.t, v);
     b.S.fill(leads.gamma, b.z);
     b.S.multiply(v, y);
     split_channels(y, c);
+    const PoleComplex z = b.z;
+    b.z.im = b.z.im - 2 * width;
     b.factor_at_energies(leads.conjugate);
+    b.z = z;
     for (int channel = 0; channel < CHANNELS; ++channel) b.S.multiply(c[channel], f[channel]);
     PoleComplex P[4][4];
     for (int end = 0; end < 2; ++end) {  // −c_a S̄ c_b, for channels on one end
@@ -63,27 +69,33 @@ inline Conductances<PoleComplex> residues(const Leads& leads, Batch& b) {
         for (int i : ENDS[end]) start = start - c[2 * end][i] * f[2 * end + 1][i];
         P[2 * end][2 * end + 1] = start;
     }
-    for (auto& x : f) b.M.solve_lower(x);
+    for (int channel = 0; channel < CHANNELS; ++channel) same[channel] = f[channel], b.M.solve_lower(f[channel]);
     PoleComplex over = inverse(b.norm);  // v is √norm times the pole's
     for (int a = 0; a < CHANNELS; ++a) {
-        P[a][a] = PoleComplex(0.0);
         for (int o = a + 1; o < CHANNELS; ++o)
             P[a][o] = P[o][a] = over * b.M.add_product(f[a], f[o], a / 2 == o / 2 ? P[a][o] : PoleComplex(0.0));
     }
-    return lossless_conductances(P);
+    if (width == 0) return lossless_conductances(P);
+    PoleComplex net[4];
+    for (int a = 0; a < CHANNELS; ++a) {
+        PoleComplex reflected(0.0), absorbed(0.0);  // −c_a S̄ c_a, and v_a Γ v_a
+        for (int i : ENDS[a / 2]) reflected = reflected - c[a][i] * same[a][i], absorbed = absorbed + v[i] * c[a][i];
+        net[a] = over * (PoleComplex(-absorbed.im, absorbed.re) - b.M.add_product(f[a], f[a], reflected));
+    }
+    return conductances(P, net);
 }
 
 }  // namespace detail
 
-inline PoleTerms conductance_terms(const Resonances& found, const Leads& leads, Batch& batch) {
+inline PoleTerms conductance_terms(const Resonances& found, const Leads& leads, double width, Batch& batch) {
     int count = int(found.order.size());
     PoleTerms terms(count);
     for (int first = 0; first < count; first += POLES) {
         for (int l = 0; l < POLES; ++l) batch.load(l, found.poles[found.order[std::min(first + l, count - 1)]]);
-        auto r = detail::residues(leads, batch);
+        auto r = detail::residues(leads, width, batch);
         for (int l = 0; l < POLES && first + l < count; ++l) {
             int at = first + l;
-            terms.x[at] = batch.z.re[l], terms.y[at] = batch.z.im[l];
+            terms.x[at] = batch.z.re[l], terms.y[at] = batch.z.im[l] - width;
             for (int hole = 0; hole < (at < found.paired ? 2 : 1); ++hole)
                 for (int k = 0; k < 4; ++k) terms.re[hole][k][at] = r.at[hole][k].re[l], terms.im[hole][k][at] = r.at[hole][k].im[l];
         }

@@ -1,6 +1,8 @@
 // The parent superconductor's self-energy, Σ(ω) = −γ(ω + Δ₀τx)/√(Δ₀²−ω²) (below Eq. S1).
 #pragma once
 
+#include <complex>
+
 #include "../values/complex.hpp"
 #include "wire.hpp"
 
@@ -19,13 +21,23 @@ struct Pairing {
     }
 };
 
-// The same at any real ω ≠ ±Δ₀, with the broadening iΓ of the wire's levels.  Above the gap
-// √(Δ₀²−ω²) is −i sgn(ω) √(ω²−Δ₀²), the retarded branch.
+// The same where numbers are complex.
 struct RetardedPairing {
     Complex<double> normal, anomalous;
 
-    RetardedPairing(Complex<double> normal, Complex<double> anomalous) : normal(normal), anomalous(anomalous) {}
+    // At z of the wire and the one of its parent, Im > 0: where levels are broadened the two differ.
+    RetardedPairing(const Wire& wire, std::complex<double> z, std::complex<double> of_parent) {
+        std::complex<double> over = 1.0 / std::sqrt(wire.delta0 * wire.delta0 - of_parent * of_parent);
+        std::complex<double> own = z + wire.gamma * of_parent * over, pair = wire.gamma * wire.delta0 * over;
+        normal = {own.real(), own.imag()}, anomalous = {pair.real(), pair.imag()};
+    }
+    // At a real ω ≠ ±Δ₀, with the broadening of the wire's levels and of its parent's.  Above the gap √(Δ₀²−ω²) is
+    // −i sgn(ω) √(ω²−Δ₀²), the retarded branch.
     RetardedPairing(const Wire& wire, double omega) {
+        if (wire.parent_dissipation > 0) {
+            *this = RetardedPairing(wire, {omega, wire.dissipation}, {omega, wire.parent_dissipation});
+            return;
+        }
         double size = std::sqrt(std::abs(wire.delta0 * wire.delta0 - omega * omega));
         Complex<double> root(size, 0.0);
         if (std::abs(omega) > wire.delta0) root = Complex<double>(0.0, omega > 0 ? -size : size);

@@ -18,20 +18,20 @@ struct Wire {
     double zeeman_per_tesla;    // ½gμ_B
     double gamma, delta0;
     double lead_mu, lead_spin_orbit_hopping, lead_zeeman_per_tesla;
-    double dissipation;
+    double dissipation, parent_dissipation;  // of the wire's own levels, and of the parent superconductor's
 
     double rotated_hopping() const { return std::hypot(hopping, spin_orbit_hopping); }
     double angle() const { return std::atan2(spin_orbit_hopping, hopping); }  // φ
 };
 
-constexpr int PARAMETERS = 9;  // numbers that follow a wire's V, in this order
+constexpr int PARAMETERS = 10;  // numbers that follow a wire's V, in this order
 
 // Wires of equal length: V, shape (wire, site), is not copied; parameters, shape (wire, PARAMETERS).
 inline std::vector<Wire> wires_of(int count, int sites, const double* V, const double* parameters) {
     std::vector<Wire> wires;
     for (int w = 0; w < count; ++w, V += sites, parameters += PARAMETERS) {
         const double* p = parameters;
-        wires.push_back({sites, V, p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8]});
+        wires.push_back({sites, V, p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8], p[9]});
     }
     return wires;
 }

@@ -4,30 +4,69 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 import arithmetics
 from disorder_landscape import Nanowire, conductance, topological_visibility
 from disorder_landscape.arguments import ArgumentError
+from disorder_landscape.model.hamiltonian import wire_hamiltonian
+from disorder_landscape.model.parameters import BIAS
 from disorder_landscape.observables.gradient import conductance_gradient
-from disorder_landscape.solver import kwant_reference
+from disorder_landscape.solver import compiled, kwant_reference
+from disorder_landscape.solver.quadrature import thermal_quadrature
+from disorder_landscape.solver.routes import thermal_average
 from random_wires import energies, fields, mus, random_wire, seeds
 
 POINT = np.array([0.3]), np.array([0.5])
 
 
-def lossy(wire, dissipation):
-    return Nanowire(wire.potential, alpha=wire.alpha, dissipation=dissipation)
+def lossy(wire, dissipation, parent=None):
+    leaking = {"dissipation": dissipation, "parent_dissipation": parent}
+    return Nanowire(wire.potential, alpha=wire.alpha, **leaking)
 
 
 @settings(max_examples=25)
-@given(seeds, mus, fields, energies, st.floats(1e-5, 0.1))
-def test_three_routes_agree(seed, mu, B, omega, dissipation):
-    wire = lossy(random_wire(seed, sites=100), dissipation)
+@given(seeds, mus, fields, energies, st.floats(1e-5, 0.1), st.sampled_from([None, 0.0, 1e-3, 0.05]))
+def test_three_routes_agree(seed, mu, B, omega, dissipation, parent):
+    wire = lossy(random_wire(seed, sites=100), dissipation, parent)
     at = [wire], np.array([mu]), np.array([B]), np.array([omega])
     G = kwant_reference.bare_conductance(*at)
     assert_allclose(arithmetics.complex_conductance(*at), G, atol=1e-8, rtol=0)
     assert_allclose(arithmetics.tilted_conductance(*at, 0.0), G, atol=1e-8, rtol=0)
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("temperature", [0.02, 0.05, 0.2, 0.3])
+@pytest.mark.parametrize("dissipation", [1e-7, 1e-4, 1e-3, 0.02])
+def test_the_average_is_the_integral(seed, temperature, dissipation):
+    wire = lossy(random_wire(seed, sites=200), dissipation)
+    arguments = [wire], *POINT, np.array(BIAS), temperature
+    G, estimate, _ = compiled.thermal_conductance(*arguments)
+    exact = thermal_quadrature(*arguments)
+    assert estimate.item() < 1e-3
+    assert abs(G - exact.conductance).max() <= estimate.item() + exact.error.item()
+    found = thermal_average(*arguments)
+    assert_allclose(found.conductance, exact.conductance, rtol=0, atol=1e-4)
+
+
+def test_a_wire_that_leaks_alone_is_integrated():
+    """Its levels are broadened unevenly, and no closed form is known."""
+    wire = lossy(random_wire(3, sites=60), 1e-3, 0.0)
+    arguments = [wire], *POINT, np.array(BIAS), 0.05
+    exact, found = thermal_quadrature(*arguments), thermal_average(*arguments)
+    assert_array_equal(found.conductance, exact.conductance)
+    both = thermal_average([lossy(random_wire(3, sites=60), 1e-3)], *arguments[1:])
+    assert abs(both.conductance - exact.conductance).max() > 1e-4
+
+
+@pytest.mark.parametrize("omega", [0.03, 0.1199, 0.1201, 0.3])
+def test_it_is_a_shift_of_the_energy(omega):
+    """Of wire and parent, where the leads are wide: G of the ends is then that at ω + iΓ."""
+    wire, width = random_wire(5, sites=30), 2e-3
+    H = wire_hamiltonian(lossy(wire, width), 0.3, 0.5, omega)
+    z = omega + 1j * width
+    shifted = np.linalg.inv(z * np.eye(len(H)) - wire_hamiltonian(wire, 0.3, 0.5, z))
+    assert_allclose(np.linalg.inv(omega * np.eye(len(H)) - H), shifted, rtol=1e-9, atol=1e-9)
 
 
 @pytest.mark.parametrize("theta", [0.0, 0.7])

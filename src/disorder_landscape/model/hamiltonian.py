@@ -68,7 +68,9 @@ def onsite(
 ) -> ComplexArray:
     """Return the onsite terms of sites with the given potentials, shape (site, 4, 4), in meV."""
     kinetic = (2 * wire.hopping - mu + np.asarray(V))[:, None, None] * TAU_Z
-    uniform = zeeman(wire.zeeman_per_tesla * B, theta) + self_energy(wire, omega)
+    uniform = zeeman(wire.zeeman_per_tesla * B, theta) + self_energy(
+        wire, omega + 1j * wire.dissipation_of_parent
+    )
     return np.asarray(kinetic + uniform - 1j * wire.dissipation * np.eye(4))
 
 

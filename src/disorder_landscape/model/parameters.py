@@ -74,8 +74,11 @@ class Nanowire:
         B_c in T: the parent's gap in a field is Δ₀√(1 − (B/B_c)²), as that of an aluminium shell
         is. The paper's does not depend on the field.
     dissipation : float
-        Γ ≥ 0 in meV: −iΓ on each site broadens the levels, as if each leaked into a bath that
-        takes no part in transport. The paper's wires have none.
+        Γ ≥ 0 in meV: ω + iΓ in place of ω broadens the levels, as if each leaked into a bath that
+        takes no part in transport (Dynes et al., PRL 41, 1509). The paper's wires have none.
+    parent_dissipation : float or None
+        The same of the parent superconductor, in Σ(ω + iΓ); None takes the wire's. With 0 the wire
+        alone leaks, by −iΓ on each site, as in Liu, Sau and Das Sarma, PRB 95, 054502.
 
     Raises
     ------
@@ -96,12 +99,13 @@ class Nanowire:
     lead_g: float | None = None
     critical_field: float = np.inf
     dissipation: float = 0.0
+    parent_dissipation: float | None = None
 
     def __post_init__(self) -> None:
         checked: dict[str, object] = {"potential": checked_potential(self.potential)}
         for name, (low, high, unit) in PARAMETER_RANGES.items():
             value = getattr(self, name)
-            if not (value is None and name in ("lead_alpha", "lead_g")):
+            if not (value is None and name in FOLLOWING):
                 checked[name] = number_in(name, value, low, high, unit)
         must = "be two numbers in meV, left and right"
         barrier = reals("barrier", self.barrier, must)
@@ -164,6 +168,17 @@ class Nanowire:
         return 0.5 * (self.g if self.lead_g is None else self.lead_g) * BOHR_MAGNETON
 
     @property
+    def dissipation_of_parent(self) -> float:
+        """Γ of the parent superconductor in meV."""
+        own = self.parent_dissipation
+        return self.dissipation if own is None else own
+
+    @property
+    def lossless(self) -> bool:
+        """Whether neither the wire nor its parent has dissipation."""
+        return self.dissipation == 0 and self.dissipation_of_parent == 0
+
+    @property
     def potential_with_barriers(self) -> FloatArray:
         """V_dis plus the barriers on the two end sites, shape (site,), in meV."""
         V = self.potential.copy()
@@ -184,8 +199,11 @@ PARAMETER_RANGES = {
     "lead_g": (0.0, 100.0, ""),
     "critical_field": (1e-3, np.inf, "T"),
     "dissipation": (0.0, 10.0, "meV"),
+    "parent_dissipation": (0.0, 10.0, "meV"),
 }
 """Range and unit within which each parameter of a wire is accepted that is one number."""
+FOLLOWING = ("lead_alpha", "lead_g", "parent_dissipation")
+"""Parameters that may be None: then they follow another one."""
 COLDEST, HOTTEST = 1e-6, 10.0
 """Range of temperatures above zero in K."""
 BARRIER_RANGE = (-1e3, 1e3, "meV")

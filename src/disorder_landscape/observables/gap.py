@@ -70,7 +70,7 @@ def gap(
         As in `conductance`; and if a wire has dissipation, or a number is out of range.
     """
     wires = routes.wires_of(wire)
-    without = all(w.dissipation == 0 for w in wires)
+    without = all(w.lossless for w in wires)
     require(without, "wire", "have no dissipation for its gap", "it has")
     grids = {"mu": grid_in("mu", mu, -1e3, 1e3, "meV"), "B": grid_in("B", B, -100.0, 100.0, "T")}
     theta = number_in("theta", theta, -FULL_TURN, FULL_TURN, "radians")

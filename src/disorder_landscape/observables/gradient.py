@@ -93,7 +93,7 @@ def conductance_gradient(
     growth_limit = number_in("growth_limit", growth_limit, 0.0, np.inf)
     check_progress(progress)
     if temperature == 0:
-        require(wire.dissipation == 0, "wire", "have no dissipation for slopes at T = 0", "it has")
+        require(wire.lossless, "wire", "have no dissipation for slopes at T = 0", "it has")
         without = bool(np.isinf(wire.critical_field))
         require(without, "wire", "have no critical field for slopes at T = 0", "it has")
     fields = grid_in("B", B, -100.0, 100.0, "T")

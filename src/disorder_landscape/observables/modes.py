@@ -73,7 +73,7 @@ def modes(wire: Nanowire, mu: float, B: float, count: int = 1, theta: float = 0.
         levels below the gap.
     """
     require(isinstance(wire, Nanowire), "wire", "be a Nanowire", f"it is {shown(wire)}")
-    require(wire.dissipation == 0, "wire", "have no dissipation for its levels", "it has")
+    require(wire.lossless, "wire", "have no dissipation for its levels", "it has")
     mu, B = number_in("mu", mu, -1e3, 1e3, "meV"), number_in("B", B, -100.0, 100.0, "T")
     wire = wire.in_field(B)
     theta = number_in("theta", theta, -FULL_TURN, FULL_TURN, "radians")

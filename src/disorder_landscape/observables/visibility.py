@@ -51,7 +51,7 @@ def topological_visibility(
     """
     wires, solver = routes.wires_of(wire), routes.known_solver(solver)
     grids = {"mu": grid_in("mu", mu, -1e3, 1e3, "meV"), "B": grid_in("B", B, -100.0, 100.0, "T")}
-    without = all(w.dissipation == 0 for w in wires)
+    without = all(w.lossless for w in wires)
     must = "have no dissipation for T_IV"
     require(without, "wire", must, "it has, and nothing is reflected in full")
     if not whether("barrier", barrier):

@@ -125,6 +125,7 @@ def handed_over(wires: Sequence[Nanowire]) -> tuple[FloatArray, FloatArray]:
             w.lead_spin_orbit_hopping,
             w.lead_zeeman_per_tesla,
             w.dissipation,
+            w.dissipation_of_parent,
         )
         for w in wires
     ]
@@ -173,8 +174,8 @@ def thermal_conductance(
 ) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
     """Return thermal averages, their estimated error and how many energies each set took.
 
-    The biases must be below the gap, and the wires must have no dissipation. Nodes are added where
-    the error is more than the tolerance in e²/h.
+    The biases must be below the gap, and the wires as dissipative as their parents. Nodes are added
+    where the error is more than the tolerance in e²/h.
 
     Returns
     -------

@@ -155,7 +155,7 @@ def _at_one_gap(
     names: Sequence[str],
 ) -> Gradient:
     """Return the derivatives of a wire without a critical field."""
-    if routes.stays_below_gap([wire], bias, temperature):
+    if wire.lossless and routes.stays_below_gap([wire], bias, temperature):
         found = _of_the_core(wire, mu, B, bias, temperature)
         missing = [name for name in names if name in BY_DIFFERENCES]
         _complete(found, wire, mu, B, bias, temperature, names)

@@ -71,9 +71,7 @@ def scattering_matrices(
                 params = {"B": field, "uniform": uniform}
                 yield (
                     (i, j, k),
-                    kwant.smatrix(
-                        ready, energy, params=params, check_hermiticity=wire.dissipation == 0
-                    ),
+                    kwant.smatrix(ready, energy, params=params, check_hermiticity=wire.lossless),
                 )
 
 

@@ -137,9 +137,8 @@ def thermal_average(
 ) -> ThermalConductance:
     """Return the exact thermal average, its estimated error and the number of energies it took.
 
-    In closed form; by adaptive quadrature where the wire has dissipation, or the field is tilted
-    and the thermal window reaches the gap, and for the rare set of which no model within the
-    tolerance is found.
+    In closed form where `closed_form_reaches`; by adaptive quadrature elsewhere, and for the rare set
+    of which no model within the tolerance is found.
     """
 
     def solve(some: Sequence[Nanowire], fields: FloatArray) -> ThermalConductance:
@@ -174,21 +173,22 @@ def thermal_window(bias: FloatArray, temperature: float) -> float:
 
 
 def stays_below_gap(wires: Sequence[Nanowire], bias: FloatArray, temperature: float) -> bool:
-    """Return whether the thermal window stays below the gap of wires that all lack dissipation."""
-    gap = min(w.delta0 for w in wires)
-    return lossless(wires) and thermal_window(bias, temperature) <= BELOW_GAP * gap
-
-
-def lossless(wires: Sequence[Nanowire]) -> bool:
-    """Return whether all of some wires lack dissipation."""
-    return all(w.dissipation == 0 for w in wires)
+    """Return whether the thermal window stays below the gap of all wires."""
+    return thermal_window(bias, temperature) <= BELOW_GAP * min(w.delta0 for w in wires)
 
 
 def closed_form_reaches(
     wires: Sequence[Nanowire], bias: FloatArray, temperature: float, theta: float
 ) -> bool:
-    """Return whether averages of some wires are taken in closed form."""
-    return lossless(wires) if theta == 0 else stays_below_gap(wires, bias, temperature)
+    """Return whether averages of some wires are taken in closed form.
+
+    In a field along the wire those of all that are as dissipative as their parents; else of those
+    without dissipation whose window stays below the gap.
+    """
+    if theta != 0:
+        lossless = all(w.lossless for w in wires)
+        return lossless and stays_below_gap(wires, bias, temperature)
+    return all(w.dissipation == w.dissipation_of_parent for w in wires)
 
 
 def closed_form(

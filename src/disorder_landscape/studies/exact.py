@@ -32,6 +32,7 @@ class _Point:
     lead_s: arb
     lead_zeeman: arb
     dissipation: arb
+    parent_dissipation: arb
     mu: arb
     omega: arb
     cos: arb
@@ -58,6 +59,7 @@ def _point(wire: Nanowire, mu: float, B: float, omega: float, theta: float) -> _
         "lead_s": wire.lead_spin_orbit_hopping,
         "lead_zeeman": wire.lead_zeeman_per_tesla,
         "dissipation": wire.dissipation,
+        "parent_dissipation": wire.dissipation_of_parent,
         "mu": mu,
         "omega": omega,
     }
@@ -110,10 +112,11 @@ def _self_energies(p: _Point) -> tuple[acb_mat, acb_mat]:
 def _ends(p: _Point) -> tuple[list[list[acb_mat]], tuple[acb_mat, acb_mat]]:
     """Return G between the end sites, [to][from], left first, and the leads' self-energies."""
     sigma = _self_energies(p)
-    root = acb(p.delta0**2 - p.omega**2).sqrt()
-    if p.omega > p.delta0:
+    of_parent = p.omega + I * p.parent_dissipation
+    root = (p.delta0**2 - of_parent**2).sqrt()
+    if p.omega > p.delta0 and p.parent_dissipation == 0:
         root = -I * acb(p.omega**2 - p.delta0**2).sqrt()
-    normal, anomalous = p.omega + p.gamma * p.omega / root + I * p.dissipation, p.gamma / root
+    normal, anomalous = p.omega + I * p.dissipation + p.gamma * of_parent / root, p.gamma / root
     uniform = _one(normal)
     for i in range(4):
         uniform[i, (i + 2) % 4] = anomalous * p.delta0

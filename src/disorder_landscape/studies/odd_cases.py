@@ -50,7 +50,7 @@ def any_case(seed: int, index: int) -> Case:
     rng = np.random.default_rng([seed, 0, index])
     chosen: dict[str, Any] = {}
     for name, (low, high, _) in PARAMETER_RANGES.items():
-        if name == "critical_field":  # it only makes a wire of another gap
+        if name in ("critical_field", "parent_dissipation"):  # the one makes another gap only
             continue
         kind = rng.integers(6)
         if name == "dissipation" and kind < 5:
