@@ -137,8 +137,8 @@ def thermal_average(
 ) -> ThermalConductance:
     """Return the exact thermal average, its estimated error and the number of energies it took.
 
-    In closed form where `closed_form_reaches`; by adaptive quadrature elsewhere, and for the rare set
-    of which no model within the tolerance is found.
+    In closed form where `closed_form_reaches`; by adaptive quadrature elsewhere, and for the rare
+    set of which no model within the tolerance is found.
     """
 
     def solve(some: Sequence[Nanowire], fields: FloatArray) -> ThermalConductance:
