@@ -7,6 +7,7 @@ namespace core {
 
 constexpr double ROUGHNESS = 10.0;  // estimated error over the smooth part's largest mismatch at the checks
 constexpr double ROUGHNESS_ABOVE = 3.0;  // the same above the gap, times the share that a node has of the average
+constexpr double PART_OF_SHARE = 0.5;  // estimated error of the samples over that of one of them (`error_of_samples`)
 constexpr double LAST_POLES = 1.0;  // poles in so many units of τ before the samples tell how narrow those between them are
 constexpr double SAFETY = 300.0;    // estimated error over the model's largest mismatch, times t', at the checks
 
@@ -97,7 +98,7 @@ inline double error_of_samples(const EnergyPlan& plan, const RationalConductance
         for (const auto& rest : of.rest)
             for (int k = 0; k < 2 * plan.nodes_below(); ++k)
                 if (k % plan.nodes_below() >= plan.nodes) worst = largest(worst, std::abs(rest[k]));
-    return worst * plan.share_of_samples;
+    return PART_OF_SHARE * worst * plan.share_of_samples;
 }
 
 // The error that what is left beside the poles makes, by how rough it is at the checks.

@@ -73,12 +73,12 @@ inline Reach reach_of(const double* bias, int count, double kT, double delta0) {
 // A wire has a level for so many sites, so a long one begins with more nodes, one for each SITES_FOR_LEAST sites, and goes
 // on to more.  Of 160 sets of 1,000 sites 28 then have no model within the tolerance, and one of the others is 2.3 times as
 // wrong as estimated; with 12 to 36 nodes it was 20 and one, 79 times, of 60 sets.
-constexpr int SITES_FOR_LEAST = 25, SITES_FOR_MOST = 6, MOST_FOR_ALL = 36;
+constexpr int SITES_FOR_LEAST = 25, SITES_FOR_MOST = 6, MOST_FOR_ALL = 36, MOST_TO_GAP = 52;
 
 // Zero if a wire is not to be tried in a round.
 inline int nodes_in_round(int round, Reach reach, const Wire& wire) {
     int nodes = reach == Reach::WINDOW ? NODES[round] : NODES_TO_GAP[round];
-    if (nodes * SITES_FOR_LEAST < wire.sites || nodes > std::max(MOST_FOR_ALL, wire.sites / SITES_FOR_MOST)) return 0;
+    if (nodes * SITES_FOR_LEAST < wire.sites || nodes > std::max(reach == Reach::WINDOW ? MOST_FOR_ALL : MOST_TO_GAP, wire.sites / SITES_FOR_MOST)) return 0;
     bool few = reach == Reach::HOT_GAP && (nodes < NODES_TO_HOT_GAP || !(resolved_up_to(wire, nodes) > LEAST_RESOLVED));
     return few ? 0 : nodes;
 }
