@@ -19,7 +19,7 @@ from pydantic import Field
 
 from disorder_landscape.config import Positive
 from disorder_landscape.model.parameters import FloatArray
-from disorder_landscape.studies.accuracy_cases import BIASES, measure, random_case
+from disorder_landscape.studies.accuracy_cases import BIASES, Region, measure, random_case
 from disorder_landscape.studies.fingerprint import fingerprint
 from disorder_landscape.studies.rows import Row, numbers
 from disorder_landscape.studies.study import Derived, Place, Plan
@@ -42,6 +42,7 @@ class AccuracyPlan(Plan):
     finer_every: Positive
     """Every so many wires is integrated more finely too."""
     seed: Annotated[int, Field(ge=0)]
+    region: Region = "cold"
 
     keys: ClassVar = ("index",)
 
@@ -51,12 +52,12 @@ class AccuracyPlan(Plan):
 
     def folder(self, place: Place) -> Path:
         """Return a folder of these very solvers and cases."""
-        settings = self.model_dump_json(include={"finer_every", "seed"})
+        settings = self.model_dump_json(include={"finer_every", "seed", "region"})
         return place.build / "studies" / fingerprint("accuracy_cases", settings=settings)
 
     def rows(self, task: Task, place: Place) -> list[dict[str, object]]:
         """Measure a wire; errors of all biases and channels stand in one cell."""
-        case = random_case(self.seed, task.index)
+        case = random_case(self.seed, task.index, region=self.region)
         found = measure(case, finer=task.index % self.finer_every == 0)
         error = " ".join(repr(float(value)) for value in found["error"].ravel())
         return [{"index": task.index, **found, "error": error}]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from dataclasses import replace
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -16,12 +17,18 @@ from disorder_landscape.model.parameters import (
     Nanowire,
 )
 from disorder_landscape.solver.quadrature import REACH, thermal_quadrature
-from disorder_landscape.solver.routes import thermal_average
+from disorder_landscape.solver.routes import stays_below_gap, thermal_average
 
 KINDS = ("pristine", "5 weak", "5 strong", "10 weak", "10 strong", "30 weak", "30 strong", "noise")
 """Kinds of wires: components, weak or strong amplitude ("sum", "double"); uncorrelated noise."""
 TEMPERATURES = (0.02, 0.05, 0.06)
 """In K."""
+Region = Literal["cold", "hot", "dissipation"]
+"""Windows below the gap; windows that reach it; broadened levels, cold and hot."""
+HOT = (0.08, 1.0)
+"""Temperatures in K of hot wires; their logarithm is uniform."""
+DISSIPATION = (1e-7, 2e-2)
+"""In meV; the same."""
 BIASES = 5
 BIAS_MAX = 0.05
 """In meV."""
@@ -42,8 +49,21 @@ class Case(NamedTuple):
     temperature: float
 
 
-def random_case(seed: int, index: int, sites: int = SITES) -> Case:
+def random_case(seed: int, index: int, sites: int = SITES, region: Region = "cold") -> Case:
     """Draw the case of an index; every tenth is at B = 0."""
+    case, rng = _cold_case(seed, index, sites), np.random.default_rng([seed, index, 1])
+    hot = float(np.exp(rng.uniform(*np.log(HOT))))
+    if region == "hot":
+        return case._replace(temperature=hot)
+    if region == "dissipation":
+        width = float(np.exp(rng.uniform(*np.log(DISSIPATION))))
+        temperature = hot if rng.random() < 0.5 else case.temperature
+        return case._replace(wire=replace(case.wire, dissipation=width), temperature=temperature)
+    return case
+
+
+def _cold_case(seed: int, index: int, sites: int) -> Case:
+    """Return a case of the first region."""
     rng = np.random.default_rng([seed, index])
     family, amplitude = int(rng.integers(5)), int(rng.integers(2))
     if family == 0:
@@ -76,8 +96,11 @@ def measure(case: Case, finer: bool) -> dict[str, Any]:
     """
     _, wire, mu, B, bias, temperature = case
     G, estimate, energies = thermal_average([wire], mu, B, bias, temperature)
-    below = BELOW_GAP * (wire.delta0 - abs(bias).max()) / (BOLTZMANN * temperature)
-    brute = thermal_quadrature([wire], mu, B, bias, temperature, reach=min(REACH, below), **BRUTE)
+    reach = REACH
+    if stays_below_gap([wire], bias, temperature):
+        below = BELOW_GAP * (wire.delta0 - abs(bias).max()) / (BOLTZMANN * temperature)
+        reach = min(REACH, below)
+    brute = thermal_quadrature([wire], mu, B, bias, temperature, reach=reach, **BRUTE)
     converged = finest = np.nan
     if finer:
         best = thermal_quadrature([wire], mu, B, bias, temperature, **FINER)
