@@ -70,8 +70,10 @@ evaluate: train ## score the network on its test realizations
 bench: $(READY) ## time the solvers, table and plot into build/bench (a few minutes)
 	$(LANDSCAPE) bench
 
-accuracy: $(READY) ## compare 2000 thermal averages with the integral by brute force
+accuracy: $(READY) ## compare 6000 thermal averages with the integral by brute force
 	$(LANDSCAPE) study accuracy
+	$(LANDSCAPE) study accuracy_hot
+	$(LANDSCAPE) study accuracy_dissipation
 
 odd-wires: $(READY) ## compare odd wires with Kwant and with the integral by brute force (an hour)
 	$(LANDSCAPE) study odd_wires

@@ -121,7 +121,7 @@ def changed(
             V = rng.normal(wire.potential.mean(), wire.potential.std(), wire.sites)
             return replace(wire, potential=V), settings
         case "dissipation":
-            return replace(wire, dissipation=DISSIPATION), settings
+            return replace(wire, dissipation=DISSIPATION, parent_dissipation=0.0), settings
         case "bias":
             return wire, replace(settings, bias=settings.bias + OFFSET)
         case _:
