@@ -124,5 +124,7 @@ def test_the_papers_network_without_noise_is_that_of_the_recipes():
 
 
 def test_a_name_that_is_none_is_refused():
-    with pytest.raises(ArgumentError, match=r"one of accuracy, accuracy_dissipation, .* it is 'none'"):
+    with pytest.raises(
+        ArgumentError, match=r"one of accuracy, accuracy_dissipation, .* it is 'none'"
+    ):
         load_study("none")

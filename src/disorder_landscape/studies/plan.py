@@ -24,6 +24,7 @@ from disorder_landscape.studies.rows import Row, read_rows
 from disorder_landscape.studies.smoothers import SmoothersPlan
 from disorder_landscape.studies.starts import StartsPlan
 from disorder_landscape.studies.study import Place, Plan
+from disorder_landscape.studies.temperatures import TemperaturesPlan
 from disorder_landscape.studies.trainings import TrainingsPlan
 from disorder_landscape.studies.uniqueness import UniquenessPlan
 from disorder_landscape.studies.unmodelled import UnmodelledPlan
@@ -40,6 +41,7 @@ AnyPlan = (
     | OddWiresPlan
     | SmoothersPlan
     | StartsPlan
+    | TemperaturesPlan
     | TrainingsPlan
     | UniquenessPlan
     | UnmodelledPlan

@@ -23,7 +23,7 @@ from disorder_landscape.inference.problem.measurement import empty_measurement
 from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
 from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.search.gauss_newton import linearise
-from disorder_landscape.model.parameters import FloatArray
+from disorder_landscape.model.parameters import TEMPERATURE, FloatArray
 from disorder_landscape.studies.study import Part, Place, Plan
 
 NARROW = 1e-12
@@ -38,6 +38,8 @@ class Setting:
     points: int
     """Of μ, and of B."""
     biases: int
+    temperature: float
+    """In K."""
     index: int
     """Of the wire."""
 
@@ -51,6 +53,7 @@ class Setting:
             mu_points=self.points,
             B_points=self.points,
             bias=tuple(np.linspace(-0.04, 0.04, self.biases)),
+            temperature=self.temperature,
             seed=1,
         )
 
@@ -62,6 +65,8 @@ class Grids(Part):
     points: tuple[Positive, ...]
     """Of μ, and of B."""
     biases: tuple[Positive, ...]
+    temperature: tuple[Annotated[float, Field(gt=0, le=1)], ...] = (TEMPERATURE,)
+    """In K."""
     count: Positive
     """Of wires."""
 
@@ -74,16 +79,17 @@ class UniquenessPlan(Plan):
     """In e²/h."""
     grids: tuple[Grids, ...]
 
-    keys: ClassVar = ("components", "points", "biases", "index")
+    keys: ClassVar = ("components", "points", "biases", "temperature", "index")
 
     def tasks(self) -> Sequence[Setting]:
-        """Return the settings, by components, points, biases and index."""
+        """Return the settings in order."""
         return sorted(
-            Setting(components, points, biases, index)
+            Setting(components, points, biases, temperature, index)
             for group in self.grids
             for components in group.components
             for points in group.points
             for biases in group.biases
+            for temperature in group.temperature
             for index in range(group.count)
         )
 
