@@ -44,6 +44,21 @@ def test_simulate_reads_a_potential_and_writes_what_the_library_says(
         assert written.attrs["command"].startswith("landscape simulate --potential")
 
 
+def test_simulate_broadens_levels(monkeypatch, capsys, tmp_path):
+    written = []
+    for width in (0, 1e-3):
+        path = tmp_path / f"{width}.nc"
+        given = "--seed", 3, "--dissipation", width, *SMALL, "-o", path
+        assert landscape(monkeypatch, capsys, "simulate", *given)[0] == 0
+        with xr.open_dataset(path, engine="h5netcdf") as dataset:
+            written.append(dataset.load())
+    sharp, broad = written
+    assert "T_IV" in sharp
+    assert "T_IV" not in broad
+    assert broad.attrs["dissipation"] == broad.attrs["parent_dissipation"] == 1e-3
+    assert abs(sharp.G_LL - broad.G_LL).max() > 1e-3
+
+
 def test_simulate_draws_the_same_potential_for_the_same_seed(monkeypatch, capsys, tmp_path):
     for name in ("a.nc", "b.nc"):
         landscape(monkeypatch, capsys, "simulate", "--seed", 3, *SMALL, "-o", tmp_path / name)

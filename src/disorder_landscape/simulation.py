@@ -133,7 +133,7 @@ def simulate_wire(
     theta: float = 0.0,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Return conductance, T_IV and potential of a wire in one dataset.
+    """Return conductance, T_IV (without dissipation) and potential of a wire in one dataset.
 
     Parameters
     ----------
@@ -158,9 +158,10 @@ def simulate_wire(
         progress=progress,
         theta=theta,
     )
-    result["T_IV"] = topological_visibility(
-        wire, grids["mu"], grids["B"], solver=solver, theta=theta
-    )
+    if wire.lossless:
+        result["T_IV"] = topological_visibility(
+            wire, grids["mu"], grids["B"], solver=solver, theta=theta
+        )
     result["potential"] = ("site", wire.potential)
     return with_units(result.assign_attrs(stated(wire)))
 
@@ -168,7 +169,8 @@ def simulate_wire(
 def stated(wire: Nanowire) -> dict[str, Any]:
     """Return the parameters that a file states of the wire in it."""
     names = ("alpha", "mass", "lattice", "g", "gamma", "delta0", "critical_field")
-    return {name: getattr(wire, name) for name in (*names, "barrier", "lead_mu")}
+    of_wire = {name: getattr(wire, name) for name in (*names, "barrier", "lead_mu", "dissipation")}
+    return of_wire | {"parent_dissipation": wire.dissipation_of_parent}
 
 
 def check_outputs(output: Path, plot: Path | None) -> None:

@@ -17,6 +17,7 @@ from disorder_landscape.cli.wire_options import (
     Components,
     CriticalField,
     Delta0,
+    Dissipation,
     Gamma,
     LandeG,
     PotentialFile,
@@ -36,6 +37,7 @@ def simulate(
     gamma: Gamma = Nanowire.gamma,
     delta0: Delta0 = Nanowire.delta0,
     critical_field: CriticalField = Nanowire.critical_field,
+    dissipation: Dissipation = Nanowire.dissipation,
     barrier: Barrier = "15",
     temperature: Annotated[float, typer.Option(help="In K; 0 is the bare conductance.")] = 0.05,
     mu: Annotated[str, typer.Option(help="Chemical potentials in meV.")] = "0",
@@ -69,6 +71,7 @@ def simulate(
         gamma=gamma,
         delta0=delta0,
         critical_field=critical_field,
+        dissipation=dissipation,
         barrier=simulation.parse_barrier(barrier),
     )
     angle = math.radians(number_in("theta", theta, -360.0, 360.0, "degrees"))

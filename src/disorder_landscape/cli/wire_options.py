@@ -24,6 +24,9 @@ Delta0 = Annotated[float, typer.Option(help="Gap of the superconductor in meV.")
 CriticalField = Annotated[
     float, typer.Option(help="Field in T at which this gap closes, as sqrt(1 - (B/Bc)^2).")
 ]
+Dissipation = Annotated[
+    float, typer.Option(help="Broadening of all levels in meV; with it there is no T_IV.")
+]
 Barrier = Annotated[
     str, typer.Option(help="Barrier on the end sites in meV: one number, or left,right.")
 ]
