@@ -76,14 +76,13 @@ namespace detail {
 
 // From the chiral basis to that of the sites: the rows of a matrix of the ends, and all of it.
 inline EndMatrix from_chiral_rows(const EndMatrix& M) {
-    const double half = std::numbers::sqrt2 / 2;
     EndMatrix found;
-    for (int j = 0; j < 8; ++j)
-        for (int end = 0; end < 2; ++end) {
-            Amplitude a = M(2 * end, j), b = M(2 * end + 1, j), c = M(4 + 2 * end, j), d = M(5 + 2 * end, j);
-            found(4 * end, j) = half * (b + d), found(4 * end + 1, j) = half * (a + c);
-            found(4 * end + 2, j) = half * (a - c), found(4 * end + 3, j) = half * (d - b);
-        }
+    for (int j = 0; j < 8; ++j) {
+        Amplitude column[8], turned[8];
+        for (int i = 0; i < 8; ++i) column[i] = M(i, j);
+        turn_to_sites(column, turned);
+        for (int i = 0; i < 8; ++i) found(i, j) = turned[i];
+    }
     return found;
 }
 inline EndMatrix from_chiral(const EndMatrix& M) {

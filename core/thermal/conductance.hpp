@@ -177,19 +177,21 @@ inline void average_sets(const Grid& grid, const EnergyPlan& plan, const SetInde
 
 }  // namespace detail
 
-// The plans of all wires in one round: one for all whose window ends below the gap, others for those who differ.
+// The plans of some wires in one round: one for all whose window ends below the gap, others for those who differ.
 class EnergyPlans {
     std::map<std::tuple<int, double, double>, EnergyPlan> plans;
     std::vector<const EnergyPlan*> of_wire;
 
 public:
-    EnergyPlans(const Grid& grid, double kT, int round) {
+    // asked(w): whether a wire has sets left.
+    template <class Asked>
+    EnergyPlans(const Grid& grid, double kT, int round, Asked asked) {
         for (int w = 0; w < grid.wire_count; ++w) {
             double delta0 = grid.wires[w].delta0;
             Reach reach = reach_of(grid.omega, grid.omega_count, kT, delta0);
             int nodes = nodes_in_round(round, reach, grid.wires[w]);
             of_wire.push_back(nullptr);
-            if (nodes == 0) continue;
+            if (nodes == 0 || !asked(w)) continue;
             bool below = reach == Reach::WINDOW;
             double resolved = reach == Reach::HOT_GAP ? resolved_up_to(grid.wires[w], nodes) : LAST;
             std::tuple key(nodes, below ? INFINITY : delta0, resolved);
@@ -209,13 +211,14 @@ inline void thermal_conductance(const Grid& grid, double kT, double tolerance, d
     if (models != nullptr) models->clear(), models->resize(total);
     auto place = [&](const SetIndex& s) { return (size_t(s.wire) * grid.mu_count + s.mu) * grid.B_count + s.field; };
     for (int round = 0; round < ROUNDS_OF_NODES; ++round) {
-        if (std::all_of(error, error + total, [&](double of) { return of <= tolerance; })) return;
-        const EnergyPlans plans(grid, kT, round);
+        size_t each = total / grid.wire_count;
+        auto done = [&](double of) { return of <= tolerance; };
+        const EnergyPlans plans(grid, kT, round, [&](int w) { return !std::all_of(error + w * each, error + (w + 1) * each, done); });
         std::vector<SetIndex> sets;
         for (int w = 0; w < grid.wire_count; ++w)
             for (int f = 0; f < grid.B_count; ++f)
                 for (int m = 0; m < grid.mu_count; ++m)
-                    if (plans.of(w) != nullptr && !(error[place({w, f, m})] <= tolerance)) sets.push_back({w, f, m});
+                    if (plans.of(w) != nullptr && !done(error[place({w, f, m})])) sets.push_back({w, f, m});
         if (sets.empty()) continue;
         std::vector<double> found(total * values, NAN), estimate(total, INFINITY);
         std::vector<SetModel> tried(models == nullptr ? 0 : total);
