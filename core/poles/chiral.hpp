@@ -48,8 +48,12 @@ inline void turn_both(Symmetric8<N>& M, Turn turn) {
 }
 
 template <class N>
-inline void to_chiral(Symmetric8<N>& M) { turn_both(M, turn_chiral<N>); }
+inline void to_chiral(Symmetric8<N>& M) {
+    turn_both(M, [](const N (&m)[8], N (&row)[8]) { turn_chiral(m, row); });
+}
 template <class N>
-inline void to_sites(Symmetric8<N>& M) { turn_both(M, turn_to_sites<N>); }
+inline void to_sites(Symmetric8<N>& M) {
+    turn_both(M, [](const N (&row)[8], N (&m)[8]) { turn_to_sites(row, m); });
+}
 
 }  // namespace core
