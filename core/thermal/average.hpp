@@ -71,7 +71,7 @@ inline double rational_average(const EnergyPlan& plan, const detail::ThermalFiel
     remainder(COMPARED, at.checks, &data.bare[m], [&](int c, int k, int sign, double value) { at.rest[c][sign][k] = value; });
     if (over > 0)
         remainder(1, above + over, &data.bare[below + COMPARED + over], [&](int c, int, int sign, double value) { at.above[c][sign] = value; });
-    for (int k = 0; k < COMPARED; ++k) at.shares[k] = detail::share_that_counts(at.checks[k], plan.kT, of.poles) * plan.share(at.checks[k]);
+    for (int k = 0; k < COMPARED; ++k) at.shares[k] = detail::share_that_counts(at.checks[k], plan.kT, of.poles) * at.of_kernel[k];
     double of_model = SAFETY * hop * detail::mismatch(at, leads, width, data, batch);
     double estimate = detail::largest(of_model, detail::error_of_rest(plan, of, at));
     if (model != nullptr) *model = {m, list, {std::move(found.poles), {0, 0}, std::move(found.order), found.paired, true}, std::move(of)};

@@ -17,11 +17,15 @@ inline double largest(double a, double b) { return b <= a || std::isnan(a) ? a :
 
 // What a model and the solver are compared by.
 struct Comparison {
-    double checks[COMPARED], shares[COMPARED];  // energies, and how much of a difference there counts
+    double checks[COMPARED], of_kernel[COMPARED];  // energies, and EnergyPlan::share of each
+    double shares[COMPARED];                       // how much of a difference there counts
     double rest[4][2][COMPARED], above[4][2];   // what the poles leave of the conductances, at ω and −ω; also above the gap
 
     Comparison(const EnergyPlan& plan, const double (&sought)[SOUGHT]) {
-        for (int k = 0; k < COMPARED; ++k) checks[k] = k < CHECKS ? plan.omega[plan.nodes + k] : sought[k - CHECKS];
+        for (int k = 0; k < COMPARED; ++k) {
+            checks[k] = k < CHECKS ? plan.omega[plan.nodes + k] : sought[k - CHECKS];
+            of_kernel[k] = k < CHECKS ? plan.shares_at_checks[k] : plan.share(checks[k]);
+        }
     }
 };
 
@@ -113,13 +117,13 @@ inline double error_of_rest(const EnergyPlan& plan, const RationalConductances& 
     double rough = 0.0, above = 0.0;
     for (int sign = 0; sign < 2; ++sign) {
         for (int k = 0; k < COMPARED; ++k) {
-            const std::vector<double> weights = plan.weights_at(sign == 0 ? at.checks[k] : -at.checks[k]);
-            double share = plan.reaches_gap() ? plan.share(at.checks[k]) : k < CHECKS ? at.shares[k] : std::sqrt(at.shares[k]);
+            const std::vector<double> own = k < CHECKS ? std::vector<double>() : plan.weights_at(sign == 0 ? at.checks[k] : -at.checks[k]);
+            const std::vector<double>& weights = k < CHECKS ? plan.at_checks[sign * CHECKS + k] : own;
+            double share = plan.reaches_gap() ? at.of_kernel[k] : k < CHECKS ? at.shares[k] : std::sqrt(at.shares[k]);
             for (int c = 0; c < 4; ++c) rough = largest(rough, off(weights, c, at.rest[c][sign][k]) * share);
         }
         if (!plan.reaches_gap()) continue;
-        const std::vector<double> weights = plan.weights_at_check_above(sign);
-        for (int c = 0; c < 4; ++c) above = largest(above, off(weights, c, at.above[c][sign]) * plan.share_above / plan.nodes_above());
+        for (int c = 0; c < 4; ++c) above = largest(above, off(plan.at_check_above[sign], c, at.above[c][sign]) * plan.share_above / plan.nodes_above());
     }
     return largest(largest(ROUGHNESS * rough, ROUGHNESS_ABOVE * above), error_of_samples(plan, of));
 }

@@ -78,7 +78,8 @@ constexpr int SITES_FOR_LEAST = 25, SITES_FOR_MOST = 6, MOST_FOR_ALL = 36, MOST_
 // Zero if a wire is not to be tried in a round.
 inline int nodes_in_round(int round, Reach reach, const Wire& wire) {
     int nodes = reach == Reach::WINDOW ? NODES[round] : NODES_TO_GAP[round];
-    if (nodes * SITES_FOR_LEAST < wire.sites || nodes > std::max(reach == Reach::WINDOW ? MOST_FOR_ALL : MOST_TO_GAP, wire.sites / SITES_FOR_MOST)) return 0;
+    int most = std::max(reach == Reach::WINDOW ? MOST_FOR_ALL : MOST_TO_GAP, wire.sites / SITES_FOR_MOST);
+    if (nodes * SITES_FOR_LEAST < wire.sites || nodes > most) return 0;
     bool few = reach == Reach::HOT_GAP && (nodes < NODES_TO_HOT_GAP || !(resolved_up_to(wire, nodes) > LEAST_RESOLVED));
     return few ? 0 : nodes;
 }

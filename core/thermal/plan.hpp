@@ -35,6 +35,9 @@ struct EnergyPlan {
     int picks[CUBIC];                  // nodes through which Σ is interpolated
     double cubic[CUBIC][CUBIC];        // inverse of their Vandermonde matrix
     std::vector<std::vector<double>> weights;  // (bias, smooth value)
+    std::vector<std::vector<double>> at_checks;       // of its values at the checks, (2·CHECKS, smooth value), first at ω
+    std::vector<std::vector<double>> at_check_above;  // and at ± the one above the gap, if there is one
+    std::vector<double> shares_at_checks;             // (CHECKS,), see `share`
     double sample = 0.0, share_of_samples = 0.0;  // the least distance of samples, and their mean share of an average
     double share_above = 0.0;          // of the kernel, at the bias at which it is most
 
@@ -83,6 +86,13 @@ struct EnergyPlan {
             share_of_samples = std::max(share_of_samples, std::sqrt(squares));
             for (int k = 2 * nodes_below(); k < smooth_values(); ++k) share += weights.back()[k];
             share_above = std::max(share_above, share);
+        }
+        for (int sign : {1, -1})
+            for (int k = 0; k < CHECKS; ++k) at_checks.push_back(weights_at(sign * omega[nodes + k]));
+        for (int k = 0; k < CHECKS; ++k) shares_at_checks.push_back(share(omega[nodes + k]));
+        for (int sign = 0; sign < 2 && reaches_gap(); ++sign) {
+            at_check_above.emplace_back(padded(smooth_values()), 0.0);
+            over.add(CHECK_ABOVE, 1.0, at_check_above.back().data() + 2 * nodes_below() + sign * nodes_above());
         }
     }
 
@@ -139,16 +149,11 @@ struct EnergyPlan {
         return weights;
     }
 
-    // The weights of the smooth part's values in that at any ω below the gap, or, of either sign, at the check above it.
+    // The weights of the smooth part's values in that at any ω below the gap.
     std::vector<double> weights_at(double at) const {
         std::vector<double> weights(padded(smooth_values()), 0.0);
         if (reaches_gap()) to_gap.add(std::atanh(at / gap), 1.0, weights.data(), nodes_below());
         else in_window.add(at / window, 1.0, weights.data());
-        return weights;
-    }
-    std::vector<double> weights_at_check_above(int sign) const {
-        std::vector<double> weights(padded(smooth_values()), 0.0);
-        over.add(CHECK_ABOVE, 1.0, weights.data() + 2 * nodes_below() + sign * nodes_above());
         return weights;
     }
 
