@@ -6,10 +6,10 @@ import numpy as np
 
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.inference.problem.gaussian import Gaussian
-from disorder_landscape.inference.problem.unknowns import Unknowns
+from disorder_landscape.inference.problem.unknowns import Unknowns, unknowns_of
 
 CONFIG = DatasetConfig(realizations=1, components=3, sites=50)
-UNKNOWNS = Unknowns(CONFIG)
+UNKNOWNS = unknowns_of(CONFIG)
 SIZE, DATA = len(UNKNOWNS.names), 40
 
 
@@ -33,6 +33,9 @@ class Linear:
     def simulate(self, X):
         Y = X @ self.slope
         return Y + self.bend * np.sin(5 * Y)
+
+    def exact_slopes(self, x):
+        return None
 
     def on_some_lines(self, share, rng):
         return self

@@ -1,5 +1,6 @@
 """The command line: what it writes, and one sentence for whatever it cannot use."""
 
+import json
 import subprocess
 import sys
 
@@ -8,7 +9,7 @@ import pytest
 import xarray as xr
 
 from command_line import landscape
-from disorder_landscape import Nanowire, conductance
+from disorder_landscape import Nanowire, Prior, conductance
 from disorder_landscape.chain import FIVE, shipped_model
 
 SMALL = ["--sites", "30", "--B", "0:0.8:5", "--bias", "-0.02,0,0.02"]
@@ -186,6 +187,8 @@ def test_verify_writes_what_few_samples_of_an_inversion_come_to(verification):
         potential_mean=one["potential"],
         alpha=one["alpha"].expand_dims(sample=3),
         alpha_mean=one["alpha"],
+    ).assign_attrs(
+        prior=json.dumps(Prior(one.sizes["component"], one.sizes["site"], alpha=(1, 20)).to_dict())
     )
     found.to_netcdf("inferred.nc", engine="h5netcdf")
     code, out, err = verification("inferred.nc", "other.nc", "--controls", 19, "-o", "verified.nc")

@@ -3,6 +3,7 @@
 Never another error, a NaN, a warning, or a wait of more than 20 s.
 """
 
+import json
 from dataclasses import fields, replace
 
 import numpy as np
@@ -356,7 +357,9 @@ def short(monkeypatch):
     monkeypatch.setattr(disorder_landscape.inference.infer, "invert", one_attempt)
 
 
-OF_POSTERIOR = {"components": ("component",), "potential": ("site",), "alpha": ()}
+PRIOR = dl.Prior(2, 10, g=(20, 30), bias_offset=dl.Normal(0, 1e-3), dissipation=(0, 1e-3))
+OF_POSTERIOR = {"g": (), "bias_offset": (), "dissipation": ()}
+OF_POSTERIOR |= {"components": ("component",), "potential": ("site",), "alpha": ()}
 NOISES = [None, 0.0, 0.01, 1.0, dict.fromkeys(CONDUCTANCES, 0.01), {"G_LL": 0.1}, {}, {1: 2}]
 NOISES += [dict.fromkeys(CONDUCTANCES, "x"), dict.fromkeys(CONDUCTANCES, np.nan), {None: 0.1}]
 NOISES += [dict.fromkeys([*CONDUCTANCES, "x"], 0.1), {key: [0.1] for key in CONDUCTANCES}]
@@ -365,18 +368,18 @@ NOISES += [dict.fromkeys([*CONDUCTANCES, "x"], 0.1), {key: [0.1] for key in COND
 @argument_sets(50)
 def test_infer_answers_or_refuses(count, short):
     odd = {
-        "model": st.sampled_from(NO_MODELS),
+        "prior": st.sampled_from(NO_MODELS),
         "noise": st.one_of(st.sampled_from(NOISES), number(0.0, 1.0)),
-        "network": st.one_of(st.booleans(), odd_scalars()),
+        "network": st.one_of(st.booleans(), st.just(MODEL), odd_scalars()),
         "samples": st.one_of(st.sampled_from([2, 4, 3, 1, 0, 4.0, "4"]), odd_scalars()),
         "seed": st.one_of(st.sampled_from([0, 7, -1, 2**31, 2**32, 2.5]), odd_scalars()),
         "settings": st.sampled_from([None, InversionSettings(attempts=1), 3, "x", {}]),
         "checkpoint": st.sampled_from([None, "nowhere.json", 3, b"x", "a" * 300, "/dev/null/x"]),
         "progress": st.sampled_from([print, None, 3]),
     }
-    others = [MODEL, replace(MODEL, config=Config(dataset=FIXED))]
+    others = [MODEL, replace(MODEL, config=Config(dataset=FIXED)), PRIOR]
     usual = st.builds(
-        lambda G, model, some: {"G": G, "model": model} | some,
+        lambda G, model, some: {"G": G, "prior": model} | some,
         datasets([MEASURED, MEASURED, LARGER]),
         st.sampled_from(others),
         some_changed({"samples": 4}, odd),
@@ -385,7 +388,9 @@ def test_infer_answers_or_refuses(count, short):
     def check(arguments):
         R = answer(lambda: dl.infer(**arguments))
         if R is not None:
-            for name, dims in OF_POSTERIOR.items():
+            unknown = [name for name in OF_POSTERIOR if name in R.variables]
+            assert "potential" in unknown
+            for name, dims in {name: OF_POSTERIOR[name] for name in unknown}.items():
                 require_numbers(R[name], ("sample", *dims))
                 require_numbers(R[f"{name}_mean"], dims)
                 require_numbers(R[f"{name}_std"], dims, 0.0)
@@ -411,7 +416,7 @@ INVERSION = PREDICTION.assign(
     alpha=PREDICTION["alpha"].expand_dims(sample=50),
     potential_mean=PREDICTION["potential"],
     alpha_mean=8.0,
-)
+).assign_attrs(prior=json.dumps(dl.Prior(2, 10, alpha=(6.4, 9.6)).to_dict()))
 FURTHER = conductance(TRUE, [0.1], [0.2, 0.5], [0.01])
 
 

@@ -18,6 +18,8 @@ from disorder_landscape.parts import MissingPartError, needs
 
 if TYPE_CHECKING:
     from disorder_landscape.inference.infer import infer
+    from disorder_landscape.inference.problem.distributions import Normal
+    from disorder_landscape.inference.problem.prior import Prior
     from disorder_landscape.inference.verify import verify
     from disorder_landscape.learning.differentiable import differentiable_conductance
     from disorder_landscape.learning.prediction import predict
@@ -26,6 +28,8 @@ __all__ = [
     "ArgumentError",
     "MissingPartError",
     "Nanowire",
+    "Normal",
+    "Prior",
     "conductance",
     "conductance_gradient",
     "differentiable_conductance",
@@ -45,6 +49,10 @@ def __getattr__(name: str) -> Any:
         with needs("inference"):
             from disorder_landscape.inference.infer import infer
         return infer
+    if name in ("Normal", "Prior"):
+        with needs("inference"):
+            from disorder_landscape.inference.problem import distributions, prior
+        return {"Normal": distributions.Normal, "Prior": prior.Prior}[name]
     if name == "differentiable_conductance":
         with needs("learning"):
             from disorder_landscape.learning.differentiable import differentiable_conductance

@@ -28,8 +28,16 @@ def folder(tmp_path_factory):
 
 
 def settings_of(folder, **changes):
-    usual = {"noise": None, "from_prior": True, "samples": 4, "seed": 0, "made": {}}
-    return Settings(folder / "model", **{**usual, **changes})
+    usual = {
+        "prior": None,
+        "model": folder / "model",
+        "noise": None,
+        "from_prior": True,
+        "samples": 4,
+        "seed": 0,
+        "made": {},
+    }
+    return Settings(**{**usual, **changes})
 
 
 def tasks(folder, output, **changes):

@@ -16,7 +16,7 @@ from disorder_landscape.inference.posterior.importance_sampling import (
     widened,
 )
 from disorder_landscape.inference.problem.gaussian import Gaussian
-from disorder_landscape.inference.problem.unknowns import Unknowns
+from disorder_landscape.inference.problem.unknowns import unknowns_of
 from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED, verdict
 from linear_data import CONFIG, DATA, SIZE, UNKNOWNS, Linear, posterior
 
@@ -55,7 +55,7 @@ def test_samples_have_the_posteriors_moments(lines):
 
 def test_importance_samples_are_not_too_narrow():
     """All directions at once, if their Mahalanobis distances are Hotelling's, on average."""
-    ten = Unknowns(CONFIG.model_copy(update={"components": 10}))
+    ten = unknowns_of(CONFIG.model_copy(update={"components": 10}))
     size = len(ten.names)
     rng = np.random.default_rng(7)
     slope = rng.normal(size=(size, DATA)) / np.sqrt(np.diag(ten.prior.covariance))[:, None]

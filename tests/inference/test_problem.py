@@ -6,7 +6,7 @@ from scipy.stats import multivariate_normal
 
 from disorder_landscape.inference.problem.gaussian import log_density
 from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
-from disorder_landscape.inference.problem.unknowns import Unknowns
+from disorder_landscape.inference.problem.unknowns import unknowns_of
 from disorder_landscape.model.disorder import disorder_realization
 from linear_data import CONFIG, SIZE, UNKNOWNS
 
@@ -22,14 +22,16 @@ def test_densities_are_scipys():
 def test_the_prior_is_the_disorder_models():
     rng = np.random.default_rng(3)
     drawn = [disorder_realization(rng, 3, 50) for _ in range(4000)]
-    values = np.array([[*c, V.mean()] for c, V in drawn])
-    covariance = UNKNOWNS.prior.covariance[np.ix_([0, 1, 2, 4], [0, 1, 2, 4])]
-    scale = np.sqrt(np.diag(covariance))
-    np.testing.assert_allclose(
-        np.cov(values.T) / np.outer(scale, scale), covariance / np.outer(scale, scale), atol=0.08
-    )
-    assert scale[-1] == pytest.approx(0.01)
-    assert UNKNOWNS.prior.mean[3] == pytest.approx(8.0)
+    X = np.array([UNKNOWNS.of_device(c, V, {"alpha": rng.uniform(6.4, 9.6)}) for c, V in drawn])
+    np.testing.assert_allclose(np.cov(X.T), np.eye(SIZE), atol=0.08)
+    np.testing.assert_allclose(X.mean(axis=0), 0, atol=0.08)
+    c, V = drawn[0]
+    np.testing.assert_allclose(UNKNOWNS.potential(X[0]), V, atol=1e-12)
+    np.testing.assert_allclose(UNKNOWNS.components(X[0]), c, atol=1e-12)
+    mean_std, alpha_std = UNKNOWNS.label_std[3:]
+    assert mean_std == pytest.approx(0.01)
+    assert alpha_std == pytest.approx(3.2 / np.sqrt(12))
+    assert UNKNOWNS.parameter("alpha", UNKNOWNS.prior.mean) == pytest.approx(8.0)
 
 
 def test_the_potentials_std_needs_no_potential():
@@ -40,18 +42,21 @@ def test_the_potentials_std_needs_no_potential():
     X = UNKNOWNS.prior.draw(rng, 20_000)
     spread = np.sqrt(UNKNOWNS.potential(X).var(axis=0).mean())
     assert UNKNOWNS.site_std(UNKNOWNS.prior.covariance) == pytest.approx(spread, rel=0.02)
-    wire = UNKNOWNS.wires(one[None], (1.0, 2.0))[0]
-    np.testing.assert_array_equal(wire.potential, UNKNOWNS.potential(one))
-    assert (wire.alpha, wire.barrier) == (UNKNOWNS.alpha(one), (1.0, 2.0))
+    covariance = np.diag(rng.uniform(0.5, 1, SIZE))
+    each = UNKNOWNS.potential_std(covariance)
+    assert np.sqrt((each**2).mean()) == pytest.approx(UNKNOWNS.site_std(covariance))
 
 
 def test_names_and_vectors():
-    assert UNKNOWNS.names == ("c_1", "c_2", "c_3", "alpha", "mean")
-    x = UNKNOWNS.vector({"c_2": np.array([1.0, 2.0])})
-    np.testing.assert_array_equal(x, [[0, 1, 0, 8, 0], [0, 2, 0, 8, 0]])
-    fixed = Unknowns(CONFIG.model_copy(update={"alpha_range": (7.0, 7.0)}))
+    assert UNKNOWNS.names == ("c_1", "c_2", "c_3", "mean", "alpha")
+    x = UNKNOWNS.vector({"c_2": np.array([0.1, 0.2])})
+    np.testing.assert_allclose(UNKNOWNS.labels(x)[:, :3], [[0, 0.1, 0], [0, 0.2, 0]], atol=1e-15)
+    np.testing.assert_array_equal(x[:, 3:], 0)
+    labels = dict(zip(UNKNOWNS.names, np.array([0.3, -0.2, 0.1, 0.02, 7.0]), strict=True))
+    np.testing.assert_allclose(UNKNOWNS.labels(UNKNOWNS.vector(labels)), [*labels.values()])
+    fixed = unknowns_of(CONFIG.model_copy(update={"alpha_range": (7.0, 7.0)}))
     assert fixed.names == ("c_1", "c_2", "c_3", "mean")
-    assert fixed.alpha(np.zeros(4)) == 7.0
+    assert fixed.parameter("alpha", np.zeros(4)) == 7.0
 
 
 def test_noise_by_channel():

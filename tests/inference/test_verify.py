@@ -1,5 +1,6 @@
 """Predictions compared with measurements: the truth passes, wrong disorder does not."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -230,7 +231,7 @@ def inversion_of(wire, apart):
         potential_mean=one["potential"],
         alpha=wire.alpha + off,
         alpha_mean=wire.alpha,
-    )
+    ).assign_attrs(prior=json.dumps(dl.Prior(COMPONENTS, SITES, alpha=(1, 20)).to_dict()))
 
 
 def test_what_an_inversion_has_found_is_judged_by_its_mean():

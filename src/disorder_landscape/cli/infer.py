@@ -35,13 +35,19 @@ def infer(
         list[Path],
         typer.Argument(metavar="measurement...", help="netCDF files with G_LL ... G_RL."),
     ],
-    model: Annotated[Path, typer.Option(help="Folder of a trained model.")],
     output: Annotated[
         Path,
         typer.Option(
             "--output", "-o", help="netCDF file; of several measurements, a folder of them."
         ),
     ],
+    prior: Annotated[
+        Path | None,
+        typer.Option(help="TOML file of what is known of the device; else the model's dataset."),
+    ] = None,
+    model: Annotated[
+        Path | None, typer.Option(help="Folder of a trained model, whose network guesses.")
+    ] = None,
     noise: Annotated[
         str | None,
         typer.Option(
@@ -68,21 +74,25 @@ def infer(
 ) -> None:
     """Find the disorder that explains a measurement, with error bars and a verdict.
 
-    The network's guess is refined with the exact simulation, by ensembles of wires; so is the
-    disorder model's prior, with --from-prior or where a guess has led astray. Some conductances may
-    be missing or NaN. Interrupted, the same command goes on (through OUTPUT.unfinished.json).
+    The prior says what is unknown besides the disorder: alpha = [6.4, 9.6] in its file, say, or
+    temperature = {mean = 0.05, std = 0.01}. The network's guess is refined with the exact
+    simulation, by ensembles of wires; so is the prior, without a model, with --from-prior or where
+    a guess has led astray. Some conductances may be missing or NaN. Interrupted, the same command
+    goes on (through OUTPUT.unfinished.json).
 
     Several measurements, with a folder as OUTPUT, are shared out among the workers or jobs; what is
     in the folder is not repeated.
 
     Example: landscape infer wire.nc --model data_small/models/five_components_and_alpha_noisy
     --noise 0.01 -o inferred.nc --plot inferred.png
+
+    Example: landscape infer device.nc --prior configs/priors/device.toml --noise 0.005 -o found.nc
     """
     from disorder_landscape.inference.file import Settings, Task, tasks_of_folder
     from disorder_landscape.inference.report import parse_noise
 
     errors = None if noise is None else parse_noise(noise)
-    settings = Settings(model, errors, from_prior, samples, seed, made_here())
+    settings = Settings(prior, model, errors, from_prior, samples, seed, made_here())
     is_file = len(measurements) == 1 and output.suffix and not output.is_dir()
     fits = len(measurements) == 1 or output.suffix != ".nc"
     require(fits, "output", "name a folder, for several measurements", f"it is '{output}'")
@@ -105,12 +115,12 @@ def _infer_alone(settings: Settings, task: Task) -> None:
     """Find what explains one measurement, on all cores, and print what was found."""
     from disorder_landscape.dataset.store import read_dataset
     from disorder_landscape.files import check_netcdf, check_writable
-    from disorder_landscape.inference.file import infer_file
+    from disorder_landscape.inference.file import infer_file, prior_of
     from disorder_landscape.inference.infer import observation_of
     from disorder_landscape.inference.problem.observation import stated_noise
     from disorder_landscape.inference.progress import announce_inference, inference_progress
     from disorder_landscape.inference.report import noise_hint, summary
-    from disorder_landscape.learning.model import load_model_config
+    from disorder_landscape.learning.model import existing_folder, load_model_config
     from disorder_landscape.simulation import check_plot
 
     output, plot = task.output, task.plot
@@ -120,11 +130,13 @@ def _infer_alone(settings: Settings, task: Task) -> None:
     if plot is not None:
         check_plot(plot)
         check_writable("plot", plot)
-    measured, config = read_dataset(task.measurement), load_model_config(settings.model)
+    measured = read_dataset(task.measurement)
     errors = stated_noise(measured.attrs) if settings.noise is None else settings.noise
-    if not settings.from_prior and (hint := noise_hint(config.training, errors)):
-        print(hint, file=sys.stderr)
-    announce_inference(observation_of(measured, config.dataset, errors))
+    if settings.model is not None and not settings.from_prior:
+        training = load_model_config(existing_folder(settings.model)).training
+        if hint := noise_hint(training, errors):
+            print(hint, file=sys.stderr)
+    announce_inference(observation_of(measured, prior_of(settings), errors))
     with resumable(), inference_progress() as progress:
         result = infer_file(settings, task, progress)
     print("\n".join(summary(result)))
@@ -172,14 +184,14 @@ def _command(
     tasks: Sequence[Task], output: Path, plot: Path | None, noise: str | None, settings: Settings
 ) -> list[str]:
     """Return the command by which a job does its share of the same."""
-    options = {
-        "--model": settings.model.resolve(),
+    options: dict[str, object] = {
         "--output": output.resolve(),
         "--samples": settings.samples,
         "--seed": settings.seed,
     }
-    if plot is not None:
-        options["--plot"] = plot.resolve()
+    for name, path in {"prior": settings.prior, "model": settings.model, "plot": plot}.items():
+        if path is not None:
+            options[f"--{name}"] = path.resolve()
     if noise is not None:
         options["--noise"] = noise
     words = [str(word) for option in options.items() for word in option]

@@ -14,11 +14,16 @@ import xarray as xr
 
 from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.dataset.store import read_dataset, write_dataset
-from disorder_landscape.inference.infer import infer
+from disorder_landscape.inference.infer import PAPERS_SETTINGS, infer
 from disorder_landscape.inference.invert import Progress, silent
 from disorder_landscape.inference.plot import plot_inference
 from disorder_landscape.inference.problem.measurement import measurement_of
-from disorder_landscape.learning.model import CONFIG, NETWORK, SCALER
+from disorder_landscape.inference.problem.prior import Prior
+from disorder_landscape.learning.model import (
+    CONFIG,
+    NETWORK,
+    SCALER,
+)
 from disorder_landscape.locks import kept_from_others
 
 ASKED = "asked"
@@ -31,18 +36,21 @@ class Settings:
 
     Parameters
     ----------
-    model : Path
-        Folder.
+    prior : Path or None
+        TOML file of what is known; without it the model's dataset says so.
+    model : Path or None
+        Folder of the model whose network guesses.
     noise : float or dict, optional
     from_prior : bool
     samples : int
     seed : int
-        All four as in `infer`.
+        As in `infer`.
     made : mapping
         Provenance of the results.
     """
 
-    model: Path
+    prior: Path | None
+    model: Path | None
     noise: float | dict[str, float] | None
     from_prior: bool
     samples: int
@@ -91,7 +99,7 @@ def tasks_of_folder(
     twice = sorted({name for name in names if names.count(name) > 1})
     must = "have names of their own, since their results have the same"
     require(not twice, "measurement", must, f"there are several of {', '.join(twice)}")
-    model = _model(settings.model)
+    given = _given(settings)
     tasks = []
     for path in measurements:
         require(path.is_file(), "measurement", "be a netCDF file", f"there is no '{path}'")
@@ -104,7 +112,7 @@ def tasks_of_folder(
             stored = _asked_of(task.output)
             must = "be a folder for results of these measurements with these options"
             but = f"'{task.output}' is another one's (delete it, or give another folder)"
-            require(stored == _asked(path, settings, model), "output", must, but)
+            require(stored == _asked(path, settings, given), "output", must, but)
         tasks.append(task)
     return tasks
 
@@ -125,24 +133,47 @@ def infer_file(settings: Settings, task: Task, progress: Progress = silent) -> x
 
 def _infer_file(settings: Settings, task: Task, progress: Progress = silent) -> xr.Dataset:
     measured = read_dataset(task.measurement)
+    prior, network = _prior_and_network(settings)
     result = infer(
         measured,
-        settings.model,
+        prior,
         settings.noise,
-        not settings.from_prior,
+        network,
         settings.samples,
         settings.seed,
         checkpoint=task.unfinished,
         progress=progress,
     )
     if task.plot is not None:  # before the result, which tells that all is done
-        usual = {name: result.attrs[name] for name in ("theta", "barrier", "temperature")}
-        plot_inference(result, measurement_of(measured, usual, complete=False), task.plot)
-    asked = _asked(task.measurement, settings, _model(settings.model))
+        explained = measurement_of(measured, PAPERS_SETTINGS, complete=False)
+        plot_inference(result, explained, task.plot)
+    asked = _asked(task.measurement, settings, _given(settings))
     attrs = {**settings.made, ASKED: asked}
     write_dataset(result, task.output, attrs, may_lack=["misfit"])  # of channels without data
     task.unfinished.unlink(missing_ok=True)
     return result
+
+
+def prior_of(settings: Settings) -> Prior | Path:
+    """Return what the settings say of the device before the measurement.
+
+    Raises
+    ------
+    ArgumentError
+        If neither a prior nor a model is given, or it cannot be read.
+    """
+    return _prior_and_network(settings)[0]
+
+
+def _prior_and_network(settings: Settings) -> tuple[Prior | Path, Path | bool]:
+    """Return the two arguments of `infer`."""
+    network = False if settings.from_prior or settings.model is None else settings.model
+    if settings.prior is not None:
+        return Prior.from_toml(settings.prior), network
+    if settings.model is not None:
+        return settings.model, network
+    must = "be given, or a model whose dataset says what is known"
+    raise ArgumentError("prior", must, "there is neither")
 
 
 def _alone_with(task: Task) -> AbstractContextManager[None]:
@@ -170,11 +201,11 @@ def infer_one_of_many(settings: Settings, task: Task) -> Outcome:
         return Outcome(task, error=str(error))
 
 
-def _asked(measurement: Path, settings: Settings, model: str) -> str:
+def _asked(measurement: Path, settings: Settings, given: Mapping[str, str]) -> str:
     """Return what a result depends on, as JSON text."""
     asked = {
         "measurement": _hash([measurement]),
-        "model": model,
+        **given,
         "noise": settings.noise,
         "from_prior": settings.from_prior,
         "samples": settings.samples,
@@ -193,10 +224,15 @@ def _asked_of(output: Path) -> str:
     return asked if isinstance(asked, str) else ""
 
 
-def _model(folder: Path) -> str:
-    """Return the hash of a model; one without a network serves from the prior."""
-    paths = [folder / name for name in (CONFIG, SCALER, NETWORK)]
-    return _hash([path for path in paths if path.exists()])
+def _given(settings: Settings) -> dict[str, str]:
+    """Return the hashes of the prior and of the model; one without a network serves as prior."""
+    given = {}
+    if settings.prior is not None:
+        given["prior"] = _hash([settings.prior])
+    if settings.model is not None:
+        paths = [settings.model / name for name in (CONFIG, SCALER, NETWORK)]
+        given["model"] = _hash([path for path in paths if path.exists()])
+    return given
 
 
 def _hash(paths: Sequence[Path]) -> str:

@@ -10,7 +10,13 @@ import xarray as xr
 
 from disorder_landscape.files import write_picture
 from disorder_landscape.inference.problem.measurement import Measurement
-from disorder_landscape.inference.report import alpha_with_std, error_bar
+from disorder_landscape.inference.report import (
+    beliefs,
+    error_bar,
+    parameter_with_std,
+    prior_as_text,
+    unknown_parameters,
+)
 from disorder_landscape.inference.verdict import CONVERGED
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.model.quantities import CONDUCTANCES
@@ -45,20 +51,31 @@ def plot_inference(result: xr.Dataset, measurement: Measurement, path: Path) -> 
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
+    names = unknown_parameters(result)
+    with_components = "component" in result.dims
+    rows = {
+        "V": (["V"] * 4, 1.0),
+        "std": (["std"] * 4, 0.6),
+        "c": ((["c"] * 2 if with_components else ["misfit"] * 2) + ["misfit"] * 2, 0.9),
+        "parameters": (["parameters"] * 4, 0.3 + 0.12 * len(names)),
+        "maps": (["measured", "explained", "T", "P"], 1.3),
+    }
+    if not names:
+        del rows["parameters"]
+    heights = [height for _, height in rows.values()]
+    width, least_height = FIGURE_SIZE
     with mpl.rc_context({"font.size": 8, "axes.titlesize": 8}):
-        figure = Figure(figsize=FIGURE_SIZE, layout="constrained")
+        height = least_height * sum(heights) / (sum(heights) - rows.get("parameters", ([], 0.0))[1])
+        figure = Figure(figsize=(width, height), layout="constrained")
         panels: dict[str, Any] = figure.subplot_mosaic(
-            [
-                ["V"] * 4,
-                ["std"] * 4,
-                ["c", "c", "misfit", "misfit"],
-                ["measured", "explained", "T", "P"],
-            ],
-            height_ratios=(1.0, 0.6, 0.9, 1.3),
+            [row for row, _ in rows.values()], height_ratios=heights
         )
         _potential(panels["V"], result)
         _potential_std(panels["std"], result)
-        _components(panels["c"], result)
+        if with_components:
+            _components(panels["c"], result)
+        if names:
+            _parameters(panels["parameters"], result)
         _misfit(panels["misfit"], result)
         _conductances(figure, panels["measured"], panels["explained"], result, measurement)
         _maps(figure, panels["T"], panels["P"], result)
@@ -97,7 +114,22 @@ def _components(panel: Any, result: xr.Dataset) -> None:
     panel.errorbar(result["component"], c, bar, fmt="k.", capsize=2, lw=0.8)
     panel.axhline(0.0, color="0.7", lw=0.5)
     panel.set(xlabel="component $n$", ylabel="$c_n$ [meV]")
-    panel.set_title(rf"$\alpha$ = {alpha_with_std(result)}")
+
+
+def _parameters(panel: Any, result: xr.Dataset) -> None:
+    """Show each parameter on the range that the prior gives it, and its value beside it."""
+    known = beliefs(result)
+    for row, (name, belief) in enumerate(known.items()):
+        low, high = belief.range
+        mean, std = ((result[name + end].item() - low) / (high - low) for end in ("_mean", "_std"))
+        std += low / (high - low)
+        panel.barh(row, 1.0, 0.5, color="0.85", lw=0)
+        panel.errorbar(mean, row, xerr=std, fmt="k.", capsize=2, lw=0.8)
+        panel.text(1.02, row, parameter_with_std(result, name), va="center")
+        panel.text(-0.02, row, f"{name}, before: {prior_as_text(belief)}", va="center", ha="right")
+    panel.set(xlim=(-0.7, 1.5), ylim=(len(known) - 0.4, -0.6))
+    panel.axis("off")
+    panel.set_title("parameters, each on the range that it may have (grey)")
 
 
 def _misfit(panel: Any, result: xr.Dataset) -> None:

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import xarray as xr
 
 from disorder_landscape.arguments import numbers_of
 from disorder_landscape.config import TrainingConfig
+from disorder_landscape.inference.problem.distributions import Distribution, Uniform
 from disorder_landscape.inference.problem.observation import noise_of_channels, one_or_each
+from disorder_landscape.inference.problem.parameters import BY_NAME
+from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.verdict import CONVERGED
 from disorder_landscape.model.parameters import NOISE_FLOOR, FloatArray
 from disorder_landscape.model.quantities import CONDUCTANCES
@@ -69,11 +74,29 @@ def stated_noise_hint(misfit: FloatArray, noise: FloatArray) -> str:
     )
 
 
-def alpha_with_std(result: xr.Dataset) -> str:
-    """Return α and its standard deviation as text."""
-    mean, std = float(result["alpha_mean"]), float(result["alpha_std"])
-    error = f"± {std:.2g} meV nm" if std else "meV nm, as in the model"
-    return f"{mean:.5g} {error}"
+def parameter_with_std(result: xr.Dataset, name: str) -> str:
+    """Return an unknown parameter and its standard deviation as text."""
+    mean, std = float(result[f"{name}_mean"]), float(result[f"{name}_std"])
+    digits = max(0, int(1 - np.floor(np.log10(std)))) if std > 0 else 6
+    unit = result[name].attrs["units"]
+    return f"{mean:.{digits}f} ± {std:.{digits}f}" + ("" if unit == "1" else f" {unit}")
+
+
+def unknown_parameters(result: xr.Dataset) -> list[str]:
+    """Return the names of the parameters that were unknown, in the order of the registry."""
+    return [name for name in BY_NAME if name in result.variables]
+
+
+def beliefs(result: xr.Dataset) -> dict[str, Distribution]:
+    """Return what was known of these before the measurement."""
+    return Prior.from_mapping(json.loads(result.attrs["prior"])).unknown
+
+
+def prior_as_text(belief: Distribution) -> str:
+    """Return what was known of a parameter as text."""
+    if isinstance(belief, Uniform):
+        return f"{belief.low:g} to {belief.high:g}"
+    return f"{belief.mean:g} ± {belief.std:g}"
 
 
 def error_bar(result: xr.Dataset) -> float:
@@ -89,8 +112,14 @@ def summary(result: xr.Dataset) -> list[str]:
         f"from            {attrs['start']}",
         f"attempts        {attrs['attempts']}, rounds: {attrs['rounds']}",
         f"error bar of V  {error_bar(result):.3g} µeV, root mean square over the sites",
-        f"alpha           {alpha_with_std(result)}",
     ]
+    for name, belief in beliefs(result).items():
+        known = prior_as_text(belief)
+        lines.append(f"{name:14}  {parameter_with_std(result, name)}; before: {known}")
+    if result.attrs["not_fixed"]:
+        lines.append(f"not fixed       {result.attrs['not_fixed']}")
+    if result.attrs["not_told_apart"]:
+        lines.append(f"not told apart  {result.attrs['not_told_apart']}")
     if attrs["verdict"] != CONVERGED:
         lines.insert(1, f"                {NOT_TO_BE_TRUSTED}")
     misfits = zip(result["channel"].to_numpy(), result["misfit"].to_numpy(), strict=True)

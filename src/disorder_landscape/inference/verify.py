@@ -29,7 +29,13 @@ from disorder_landscape.arguments import (
     whole_number_in,
 )
 from disorder_landscape.config import DatasetConfig
-from disorder_landscape.inference.problem.measurement import Measurement, measurement_of, simulated
+from disorder_landscape.inference.inferred import as_calibrated, mean_wire, sample_wires
+from disorder_landscape.inference.problem.measurement import (
+    Measurement,
+    check_wire,
+    measurement_of,
+    simulated,
+)
 from disorder_landscape.inference.problem.observation import (
     errors_variance,
     noise_of_channels,
@@ -114,6 +120,11 @@ def verify(
     known = config is None or isinstance(config, DatasetConfig)
     require(known, "config", "be a DatasetConfig", f"it is {shown(config)}")
     measured = [measurement_of(dataset) for dataset in given]
+    if _is_inversion(prediction):
+        measured = [as_calibrated(prediction, one) for one in measured]
+    else:
+        for measurement in measured:
+            check_wire(measurement)
     stated = [stated_noise(dataset.attrs, 0.0) if noise is None else noise for dataset in given]
     errors = np.array([noise_of_channels(one) for one in stated])
     controls = whole_number_in("controls", controls, round(1 / SIGNIFICANCE) - 1, 10_000)
@@ -124,7 +135,7 @@ def verify(
     lead_mu = model.wire.lead_mu
     controlled = [predicted, *control_wires(model, controls, seed)]
     wires = [replace(wire, lead_mu=lead_mu) for wire in controlled]
-    samples = _samples(prediction, wires[0])
+    samples = _samples(prediction)
     in_all = simulations(len(wires), measured, tried)
     in_all += len(samples) * sum(m.mu.size * m.B.size for m in measured)
 
@@ -144,12 +155,11 @@ def _is_inversion(prediction: xr.Dataset) -> bool:
     return isinstance(prediction, xr.Dataset) and "potential_mean" in prediction.variables
 
 
-def _samples(prediction: xr.Dataset, wire: Nanowire) -> list[Nanowire]:
+def _samples(prediction: xr.Dataset) -> list[Nanowire]:
     """Return the samples of an inversion, if the prediction is one and has enough of them."""
     if not _is_inversion(prediction) or prediction.sizes["sample"] < LEAST_SAMPLES:
         return []
-    each = zip(prediction["potential"].to_numpy(), prediction["alpha"].to_numpy(), strict=True)
-    return [replace(wire, potential=V, alpha=alpha) for V, alpha in each]
+    return sample_wires(prediction)
 
 
 def _p_of_samples(
@@ -184,17 +194,14 @@ def _predicted_wire(prediction: xr.Dataset) -> Nanowire:
     must = "have the dim sample, if it is the result of an inversion"
     require(not is_old, "prediction", must, "an older version made it: run infer again")
     must = "hold the potential and alpha of one wire, as `landscape predict` writes them"
-    names, wanted = ("potential", "alpha"), {"potential": ("site",), "alpha": ()}
     if _is_inversion(prediction):
-        names = "potential_mean", "alpha_mean"
-        wanted = {"potential_mean": ("site",), "alpha_mean": ()}
-        wanted |= {"potential": ("sample", "site"), "alpha": ("sample",)}
-    for name, dims in wanted.items():
+        return mean_wire(prediction)
+    for name, dims in {"potential": ("site",), "alpha": ()}.items():
         is_there = is_dataset and name in prediction.variables
         require(is_there, "prediction", must, f"it lacks {name}")
         found = prediction[name].dims
         require(found == dims, "prediction", must, f"the dims of {name} are {found}")
-    V, alpha = (prediction[name] for name in names)
+    V, alpha = (prediction[name] for name in ("potential", "alpha"))
     return Nanowire(
         V.to_numpy(), alpha=number_in("alpha", alpha.to_numpy(), *PARAMETER_RANGES["alpha"])
     )

@@ -35,6 +35,11 @@ def kernel(correlation_length: float = CORRELATION_LENGTH, amplitude: str = "sum
     return np.asarray(k * scale[amplitude])
 
 
+def noise_std_of(amplitude: str, correlation_length: float = CORRELATION_LENGTH) -> float:
+    """Return the standard deviation of the noise in meV that with "sum" is this amplitude."""
+    return NOISE_STD * float(kernel(correlation_length, amplitude).sum())
+
+
 def smooth_noise(
     rng: np.random.Generator,
     sites: int,

@@ -108,12 +108,16 @@ def at_a_temperature(
     bias: FloatArray,
     temperature: float,
     names: Sequence[str],
+    complete: bool = True,
 ) -> Gradient:
-    """Return the derivatives at a temperature with respect to what is named."""
+    """Return the derivatives at a temperature with respect to what is named.
+
+    Incomplete ones are NaN where the closed form has none, instead of differences of quadratures.
+    """
     if np.isinf(wire.critical_field):
-        found = _at_one_gap(wire, mu, B, bias, temperature, names)
+        found = _at_one_gap(wire, mu, B, bias, temperature, names, complete)
     else:
-        each = [_in_field(wire, mu, float(b), bias, temperature, names) for b in B]
+        each = [_in_field(wire, mu, float(b), bias, temperature, names, complete) for b in B]
         found = joined(each, axis=1)
     return replace(found, by={name: found.by[name] for name in names})
 
@@ -130,11 +134,13 @@ def _in_field(
     bias: FloatArray,
     temperature: float,
     names: Sequence[str],
+    complete: bool,
 ) -> Gradient:
     """Return the derivatives of a wire whose gap Δ₀(B) = Δ₀√(1 − (B/B_c)²) depends on the field."""
     through_gap = {"B", "delta0", "critical_field"}
     wanted = set(names) | ({"delta0"} if through_gap & set(names) else set())
-    found = _at_one_gap(wire.in_field(B), mu, np.array([B]), bias, temperature, sorted(wanted))
+    at = mu, np.array([B]), bias, temperature
+    found = _at_one_gap(wire.in_field(B), *at, sorted(wanted), complete)
     if "delta0" not in wanted:
         return found
     share = B / wire.critical_field
@@ -153,12 +159,17 @@ def _at_one_gap(
     bias: FloatArray,
     temperature: float,
     names: Sequence[str],
+    complete: bool,
 ) -> Gradient:
     """Return the derivatives of a wire without a critical field."""
     if wire.lossless and routes.stays_below_gap([wire], bias, temperature):
         found = _of_the_core(wire, mu, B, bias, temperature)
         missing = [name for name in names if name in BY_DIFFERENCES]
-        _complete(found, wire, mu, B, bias, temperature, names)
+        if complete:
+            _complete(found, wire, mu, B, bias, temperature, names)
+        else:
+            for values in found.by.values():
+                values[~np.isfinite(found.gradient_error)] = np.nan
     else:
         G, error, energies = (
             part[0] for part in routes.thermal_average([wire], mu, B, bias, temperature)

@@ -25,7 +25,7 @@ from disorder_landscape.inference.invert import invert
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.measurement import Measurement, empty_measurement
 from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
-from disorder_landscape.inference.problem.unknowns import Unknowns
+from disorder_landscape.inference.problem.unknowns import unknowns_of
 from disorder_landscape.inference.verdict import verdict
 from disorder_landscape.learning.model import TrainedModel, load_model
 from disorder_landscape.model.parameters import FloatArray
@@ -106,7 +106,7 @@ def measured_wire(
 ) -> tuple[Observation, FloatArray]:
     """Return a measurement of a fresh wire of a disorder model, with errors, and the truth."""
     config = config.model_copy(update={"seed": SEED})
-    unknowns = Unknowns(config)
+    unknowns = unknowns_of(config)
     truth = unknowns.of_realization(realization(config, index))
     settings = empty_measurement(config)
     errors = noise_of_channels(noise)

@@ -5,6 +5,7 @@ One row per wire and noise, with what the accuracy, the calibration and the verd
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -47,18 +48,20 @@ def inversion_row(task: Task) -> dict[str, object]:
     found = inverted(observation, network, task.index)
     mean = found.answer.mean
     guess = network_labels(network, unknowns, observation.measurement.G[None])[0]
+    alpha = partial(unknowns.parameter, "alpha")
     papers = np.array([name != "mean" for name in unknowns.names])
-    variance = np.diag(unknowns.prior.covariance)
+    true, answered, guessed = (unknowns.labels(x) for x in (truth, mean, guess))
+    variance = unknowns.label_std**2
     row: dict[str, object] = {
         "model": task.model,
         "noise": task.noise,
         "index": task.index,
         "network_error": unknowns.site_distance(guess, truth),
         "site_error": unknowns.site_distance(mean, truth),
-        "network_scaled_error": ((guess - truth) ** 2 / variance)[papers].mean(),
-        "scaled_error": ((mean - truth) ** 2 / variance)[papers].mean(),
-        "network_alpha_error": abs(unknowns.alpha(guess) - unknowns.alpha(truth)),
-        "alpha_error": abs(unknowns.alpha(mean) - unknowns.alpha(truth)),
+        "network_scaled_error": ((guessed - true) ** 2 / variance)[papers].mean(),
+        "scaled_error": ((answered - true) ** 2 / variance)[papers].mean(),
+        "network_alpha_error": abs(alpha(guess) - alpha(truth)),
+        "alpha_error": abs(alpha(mean) - alpha(truth)),
         "mahalanobis": found.answer.squared_distance(truth),
         **found.outcome,
     }

@@ -21,7 +21,7 @@ from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.measurement import empty_measurement
 from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
-from disorder_landscape.inference.problem.unknowns import Unknowns
+from disorder_landscape.inference.problem.unknowns import Unknowns, unknowns_of
 from disorder_landscape.inference.search.gauss_newton import linearise
 from disorder_landscape.model.parameters import TEMPERATURE, FloatArray
 from disorder_landscape.studies.study import Part, Place, Plan
@@ -108,9 +108,9 @@ def information_rows(setting: Setting, noises: Iterable[float]) -> list[dict[str
         `spread` of the posterior and `prior_spread` in meV, root mean square over the sites.
     """
     config = setting.config
-    unknowns = Unknowns(config)
+    unknowns = unknowns_of(config)
     truth = unknowns.of_realization(realization(config, setting.index))
-    slope = _slopes(unknowns, truth)
+    slope = _slopes(config, unknowns, truth)
     prior = unknowns.prior.covariance
     root = np.linalg.cholesky(prior)
     rows: list[dict[str, object]] = []
@@ -132,7 +132,7 @@ def information_rows(setting: Setting, noises: Iterable[float]) -> list[dict[str
     return rows
 
 
-def _slopes(unknowns: Unknowns, truth: FloatArray) -> FloatArray:
+def _slopes(config: DatasetConfig, unknowns: Unknowns, truth: FloatArray) -> FloatArray:
     """Return the derivatives of all conductances (unknown, datum)."""
-    observation = Observation(empty_measurement(unknowns.config), unknowns, noise_of_channels(0.0))
+    observation = Observation(empty_measurement(config), unknowns, noise_of_channels(0.0))
     return linearise(observation, Gaussian(truth, NARROW * np.eye(truth.size)))[1]

@@ -21,7 +21,7 @@ from disorder_landscape.inference.problem.measurement import (
     simulated,
 )
 from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
-from disorder_landscape.inference.problem.unknowns import Unknowns
+from disorder_landscape.inference.problem.unknowns import unknowns_of
 from disorder_landscape.inference.verification.predictive import predictive_p
 from disorder_landscape.model.parameters import FloatArray, Nanowire
 from disorder_landscape.studies.fresh_wires import (
@@ -150,7 +150,7 @@ def unmodelled_row(task: Task, samples: int, every: int) -> dict[str, object]:
     """
     network = network_of(task.model, task.noise)
     config = network.config.dataset.model_copy(update={"seed": SEED})
-    unknowns, noise = Unknowns(config), noise_of_channels(task.noise)
+    unknowns, noise = unknowns_of(config), noise_of_channels(task.noise)
     one = realization(config, task.index)
     settings = empty_measurement(config)
     G = true_conductances(task, one.wire, settings)
@@ -177,7 +177,7 @@ def unmodelled_row(task: Task, samples: int, every: int) -> dict[str, object]:
             "index": task.index,
             "departure": float(np.sqrt((change**2).mean()) / task.noise),
             "site_error": float(np.sqrt(((unknowns.potential(mean) - true.potential) ** 2).mean())),
-            "alpha_error": abs(unknowns.alpha(mean) - one.alpha),
+            "alpha_error": abs(unknowns.parameter("alpha", mean) - one.alpha),
             "p_predictive": predictive_p(predicted, further.data, further.variance, rng),
             **found.outcome,
         }

@@ -58,6 +58,9 @@ class ImportanceSamples:
     power: float = 1.0
     """To which the weights are raised. If it is less than one, the samples are those of a wider
     distribution than the posterior."""
+    log_mean_weight: float = np.nan
+    """The logarithm of the mean of the weights before they are normalised: of the evidence, where
+    these are densities."""
 
     @property
     def effective_sample_size(self) -> float:
@@ -148,10 +151,11 @@ def tempered(X: FloatArray, log_weight: FloatArray, least: float) -> ImportanceS
 
     The power is one if the weights themselves have it.
     """
+    log_mean = float(np.logaddexp.reduce(log_weight) - np.log(log_weight.size))
 
     def to_the(power: float) -> ImportanceSamples:
         weight = np.exp(power * (log_weight - log_weight.max()))
-        return ImportanceSamples(X, weight / weight.sum(), power)
+        return ImportanceSamples(X, weight / weight.sum(), power, log_mean)
 
     whole = to_the(1.0)
     if whole.effective_sample_size >= least:

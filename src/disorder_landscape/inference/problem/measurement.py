@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -28,8 +28,13 @@ QUANTA = ("", "e^2/h", "e²/h", "e**2/h", "e2/h")
 """Units that conductances may state."""
 LARGEST = 10.0
 """In e²/h: no conductance of a wire with one subband is above 4."""
-FIXED = ("mass", "lattice", "g", "gamma", "delta0", "critical_field", "dissipation")
-"""Parameters of `Nanowire` that all wires of this program's models have in common."""
+OF_THE_WIRE = (
+    *("alpha", "g", "gamma", "delta0", "critical_field", "dissipation"),
+    *("mass", "lattice", "lead_mu"),
+)
+"""Parameters of `Nanowire` that a measurement may state as attributes, besides its barriers."""
+FIXED = tuple(name for name in OF_THE_WIRE if name not in ("alpha", "lead_mu"))
+"""Those that all wires of this program's networks have in common."""
 AXIS_UNITS = {"mu": ("meV",), "B": ("T", "tesla"), "bias": ("meV", "mV")}
 """Units that axes may state."""
 IN_QUANTA = f"be in e²/h, which is {QUANTUM:.4g} S, by which conductances in S are divided"
@@ -52,6 +57,16 @@ class Measurement:
     """Left and right, in meV."""
     temperature: float
     """In K."""
+    axis: str = "mu"
+    """What the first axis is: μ in meV, or "gate", a voltage in any unit."""
+    stated: Mapping[str, float] = field(default_factory=dict)
+    """What it says of the device: parameters by name, barriers each by its own."""
+
+    @property
+    def settings(self) -> dict[str, float]:
+        """Temperature and barriers by name, as stated or as usual."""
+        left, right = self.barrier
+        return {"temperature": self.temperature, "barrier_left": left, "barrier_right": right}
 
 
 def settings_of(config: DatasetConfig) -> dict[str, Any]:
@@ -86,8 +101,8 @@ def measurement_of(
     Parameters
     ----------
     dataset : Dataset
-        G_LL … G_RL in e²/h, dims (mu, B, bias) in any order, and the attributes SETTINGS, as
-        `conductance` returns them.
+        G_LL … G_RL in e²/h, dims (mu, B, bias) in any order, or gate in place of mu, and the
+        attributes SETTINGS, as `conductance` returns them.
     usual : mapping, optional
         Settings where the attributes are missing.
     complete : bool
@@ -102,6 +117,10 @@ def measurement_of(
     """
     is_dataset = isinstance(dataset, xr.Dataset)
     require(is_dataset, "measurement", "be a Dataset", f"it is {type(dataset).__name__!r}")
+    axis = "gate" if "gate" in dataset.dims and "mu" not in dataset.variables else "mu"
+    if axis == "gate":
+        values = dataset["gate"].to_numpy()
+        dataset = dataset.rename(gate="mu").assign_coords(mu=("mu", values))  # in any unit
     must = "hold the conductances of one wire over mu, B and bias"
     given = [name for name in CONDUCTANCES if name in dataset.variables]
     missing = [name for name in (*CONDUCTANCES, *AXES) if name not in dataset.variables]
@@ -116,27 +135,50 @@ def measurement_of(
     missing = [name for name in SETTINGS if name not in settings]
     states = f"state {', '.join(SETTINGS)} as attributes"
     require(not missing, "measurement", states, f"it lacks {', '.join(missing)}")
-    _check_wire(dataset.attrs)
-    for axis in AXES:
-        is_axis = dataset[axis].dims == (axis,) and dataset[axis].dtype.kind in "fiu"
-        require(is_axis, axis, "be numbers along their own dimension", "it is something else")
+    for name in AXES:
+        is_axis = dataset[name].dims == (name,) and dataset[name].dtype.kind in "fiu"
+        require(is_axis, name, "be numbers along their own dimension", "it is something else")
     dataset = dataset.sortby(list(AXES))
     return Measurement(
         G=_checked_conductances(dataset, given, complete),
-        mu=_axis(dataset, "mu", 1e3),
+        mu=_axis(dataset, "mu", 1e3 if axis == "mu" else 1e6),
         B=_axis(dataset, "B", 100.0),
         bias=_axis(dataset, "bias", 1e3),
         theta=number_in("theta", settings["theta"], -FULL_TURN, FULL_TURN, "radians"),
         barrier=_two_barriers(settings["barrier"]),
         temperature=checked_temperature(settings["temperature"]),
+        axis=axis,
+        stated=_stated(dataset.attrs),
     )
 
 
-def _check_wire(attrs: Mapping[Any, object]) -> None:
-    """Require that a measurement states the values of FIXED, where it states any."""
+def _stated(attrs: Mapping[Any, object]) -> dict[str, float]:
+    """Return what attributes say of the device."""
+    stated = {
+        name: number_in(name, attrs[name], *PARAMETER_RANGES[name])
+        for name in OF_THE_WIRE
+        if name in attrs
+    }
+    if "temperature" in attrs:
+        stated["temperature"] = checked_temperature(attrs["temperature"])
+    if "barrier" in attrs:
+        stated["barrier_left"], stated["barrier_right"] = _two_barriers(attrs["barrier"])
+    return stated
+
+
+def check_wire(measurement: Measurement) -> None:
+    """Require that a measurement states the values of FIXED, where it states any.
+
+    Raises
+    ------
+    ArgumentError
+        If it states another, or is over gate voltages instead of μ.
+    """
+    on_mu = measurement.axis == "mu"
+    require(on_mu, "measurement", "be over mu in meV", "it is over gate, whose unit is not known")
     for name in FIXED:
         usual = getattr(Nanowire, name)
-        stated = number_in(name, attrs.get(name, usual), *PARAMETER_RANGES[name])
+        stated = measurement.stated.get(name, usual)
         must = f"be {usual:g}, as in all simulations here"
         require(bool(np.isclose(stated, usual)), name, must, f"the measurement's is {stated:g}")
 

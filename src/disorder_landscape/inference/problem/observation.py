@@ -11,13 +11,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from disorder_landscape.arguments import number_in, reals, require
 from disorder_landscape.inference.problem.measurement import Measurement, simulated
-from disorder_landscape.inference.problem.unknowns import Unknowns
-from disorder_landscape.model.parameters import NOISE_FLOOR, FloatArray
+from disorder_landscape.inference.problem.unknowns import Device, Unknowns, share_settings
+from disorder_landscape.model.parameters import NOISE_FLOOR, FloatArray, Nanowire
 from disorder_landscape.model.quantities import CONDUCTANCES
-from disorder_landscape.solver import compiled
+from disorder_landscape.solver import compiled, gradients, routes
 
 SOLVER_ERROR = compiled.core.TOLERANCE
 """In e²/h: the error of the simulation. Smaller noise makes no difference."""
+POINTS_AT_ONCE = 4
+"""Chemical potentials at which derivatives by all sites are in memory together."""
 FEW = 7
 """Grids of so many lines or fewer stay whole."""
 
@@ -87,7 +89,46 @@ class Observation:
 
     def conductances(self, X: FloatArray) -> FloatArray:
         """Return conductances of samples in e²/h, shape (sample, mu, B, bias, channel)."""
-        return simulated(self.unknowns.wires(X, self.measurement.barrier), self.measurement)
+        devices = self.unknowns.devices(X, self.measurement)
+        if share_settings(devices):
+            wires = [device.wire for device in devices]
+            return simulated(wires, self._as_set_up(devices[0]))
+        return np.stack([simulated(one.wire, self._as_set_up(one)) for one in devices])
+
+    def exact_slopes(self, x: FloatArray) -> tuple[FloatArray, FloatArray] | None:
+        """Return the data (datum,) and their derivatives (unknown, datum) at x, in closed form.
+
+        None where the closed form does not reach: with dissipation, in tilted fields, at T = 0 and
+        where biases and temperature reach the gap. At single points where it fails derivatives are
+        zero.
+        """
+        device = self.unknowns.devices(x[None], self.measurement)[0]
+        wire, at = device.wire, self._as_set_up(device)
+        if not _closed_form_has_slopes(wire, at) or "dissipation" in self.unknowns.parameters:
+            return None
+        G, slopes = [], []
+        for points in range(0, at.mu.size, POINTS_AT_ONCE):
+            some = slice(points, points + POINTS_AT_ONCE)
+            found = gradients.at_a_temperature(
+                wire,
+                at.mu[some],
+                at.B,
+                at.bias,
+                at.temperature,
+                self.unknowns.derivatives,
+                complete=False,
+            )
+            part = replace(self.measurement, mu=self.measurement.mu[some])
+            G.append(found.conductance)
+            slopes.append(np.nan_to_num(self.unknowns.slopes(x, part, found.by)))
+        slope = np.concatenate(slopes)[self.is_measured].T
+        return np.concatenate(G)[self.is_measured], slope
+
+    def _as_set_up(self, device: Device) -> Measurement:
+        """Return the measurement at the settings that it has in truth."""
+        setup = device.setup
+        at = replace(self.measurement, mu=setup.mu, bias=setup.bias)
+        return replace(at, temperature=setup.temperature)
 
     def misfit(self, y: FloatArray) -> FloatArray:
         """Return root-mean-square misfits in e²/h, shape (channel,); NaN without data."""
@@ -96,6 +137,14 @@ class Observation:
         total = np.bincount(self.channel, squares, minlength=len(CONDUCTANCES))
         mean = np.divide(total, count, out=np.full(count.size, np.nan), where=count > 0)
         return np.asarray(np.sqrt(mean))
+
+
+def _closed_form_has_slopes(wire: Nanowire, at: Measurement) -> bool:
+    """Return whether there are derivatives of a wire at these settings in closed form."""
+    if not (wire.lossless and at.theta == 0 and at.temperature > 0):
+        return False
+    narrowest = wire.in_field(float(abs(at.B).max()))
+    return routes.stays_below_gap([narrowest], at.bias, at.temperature)
 
 
 def errors_variance(noise: ArrayLike) -> FloatArray:

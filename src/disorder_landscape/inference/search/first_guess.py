@@ -37,7 +37,8 @@ def network_guess(
     observation = on_grid_of_network(model.config.dataset, observation)
     unknowns = observation.unknowns
     guess = network_labels(model, unknowns, observation.measurement.G[None])[0]
-    error = _error_without_noise(model, unknowns)
+    per_label = np.linalg.inv(unknowns.label_slopes(guess))
+    error = np.sqrt((per_label**2) @ _error_without_noise(model, unknowns) ** 2)
     X = Gaussian(guess, LOCAL**2 * np.diag(error**2)).draw(
         rng, WIRES_PER_UNKNOWN * len(unknowns.names)
     )
@@ -56,8 +57,8 @@ def on_grid_of_network(config: DatasetConfig, observation: Observation) -> Obser
 
 
 def _error_without_noise(model: TrainedModel, unknowns: Unknowns) -> FloatArray:
-    """Return the network's errors on its test realizations, the prior's without them (unknown,)."""
-    error = dict(zip(unknowns.names, np.sqrt(np.diag(unknowns.prior.covariance)), strict=True))
+    """Return the network's errors on its test realizations, the prior's without them (label,)."""
+    error = dict(zip(unknowns.names, unknowns.label_std, strict=True))
     for name, std in zip(model.labels.names, model.labels.std, strict=True):
         if name in model.r2_by_label:
             error[name] = std * np.sqrt(1 - model.r2_by_label[name])

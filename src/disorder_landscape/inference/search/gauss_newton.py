@@ -1,9 +1,10 @@
 """The last micro-electronvolts: Gauss–Newton steps to the optimum of the posterior, and its width.
 
-The width is that of Laplace's approximation. The derivatives are central differences of the thermal
-averages along the principal axes of the present distribution. The differences are half a standard
-deviation to either side. They are no less than is needed for the simulation's own error (of few
-conductances up to 10⁻⁴ e²/h) not to pass for a slope.
+The width is that of Laplace's approximation. The derivatives are exact where the closed form has
+them, at a cost that does not depend on the number of unknowns. Elsewhere they are central
+differences of the thermal averages along the principal axes of the present distribution. The
+differences are half a standard deviation to either side. They are no less than is needed for the
+simulation's own error (of few conductances up to 10⁻⁴ e²/h) not to pass for a slope.
 """
 
 from __future__ import annotations
@@ -15,7 +16,6 @@ import numpy as np
 
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.observation import Observation, objective, overall_misfit
-from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.model.parameters import FloatArray
 
 DIFFERENCE = 0.5
@@ -23,8 +23,6 @@ DIFFERENCE = 0.5
 LEAST_DIFFERENCE = 1e-4
 """… or, if that is more, in meV per site, root mean square: a fortieth of kT at 50 mK. (Five times
 as much changes error bars by a few percent, and so, now and then, does a fifth of it.)"""
-ALPHA_UNIT = 50.0
-"""Change of α in meV nm that changes the conductances as much as 1 meV of V does."""
 STEPS = 12
 """At most."""
 DAMPING = 4.0, 1e-2, 1e6
@@ -101,19 +99,16 @@ def precision_of(observation: Observation, slope: FloatArray) -> FloatArray:
 
 def linearise(observation: Observation, about: Gaussian) -> tuple[FloatArray, FloatArray]:
     """Return the data at the mean of a distribution (datum,) and the slopes (unknown, datum)."""
-    unit = _units(observation.unknowns)
+    exact = observation.exact_slopes(about.mean)
+    return _differences(observation, about) if exact is None else exact
+
+
+def _differences(observation: Observation, about: Gaussian) -> tuple[FloatArray, FloatArray]:
+    """Do as `linearise`, by central differences."""
+    unit = observation.unknowns.alike
     variance, axes = np.linalg.eigh(about.covariance / np.outer(unit, unit))
     reach = np.maximum(DIFFERENCE * np.sqrt(np.maximum(variance, 0.0)), LEAST_DIFFERENCE)
     steps = (axes * reach).T * unit
     Y = observation.simulate(np.concatenate([[about.mean], about.mean + steps, about.mean - steps]))
     up, down = np.split(Y[1:], 2)
     return Y[0], np.linalg.solve(steps, (up - down) / 2)
-
-
-def _units(unknowns: Unknowns) -> FloatArray:
-    """Return changes of the unknowns that are alike to the conductances, shape (unknown,)."""
-    unit = np.full(len(unknowns.names), np.sqrt(unknowns.config.sites))
-    unit[-1] = 1.0
-    if "alpha" in unknowns.names:
-        unit[unknowns.names.index("alpha")] = ALPHA_UNIT
-    return unit

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from disorder_landscape.inference.problem.observation import Observation
-from disorder_landscape.inference.search.first_guess import network_labels, on_grid_of_network
+from disorder_landscape.inference.search.first_guess import on_grid_of_network
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.model.parameters import FloatArray
 
@@ -45,9 +45,7 @@ class NetworkFeatures:
 
     def _labels(self, Y: FloatArray) -> FloatArray:
         G = Y.reshape(-1, *self.on_grid.measurement.G.shape)
-        names = self.model.labels.names
-        predicted = [name in names for name in self.on_grid.unknowns.names]
-        return network_labels(self.model, self.on_grid.unknowns, G)[:, predicted]
+        return np.asarray(self.model.predict_labels(G.astype(np.float32)), dtype=float)
 
 
 def network_features(

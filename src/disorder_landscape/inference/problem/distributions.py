@@ -1,0 +1,123 @@
+"""What is believed of one parameter before the measurement: known, uniform or normal.
+
+Each is a function of a standard normal number ξ, so that all unknowns together are white noise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.special import ndtr, ndtri
+
+from disorder_landscape.arguments import ArgumentError, number_in, reals, require, shown
+from disorder_landscape.model.parameters import FloatArray
+
+FARTHEST = 5.0
+"""Values are taken for no more than so many standard deviations off, which is one in 2 million."""
+
+
+@dataclass(frozen=True)
+class Uniform:
+    """Any number between two is as likely."""
+
+    low: float
+    high: float
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """The least and the largest value."""
+        return self.low, self.high
+
+    @property
+    def mean(self) -> float:
+        """The middle."""
+        return (self.low + self.high) / 2
+
+    @property
+    def std(self) -> float:
+        """The standard deviation."""
+        return float((self.high - self.low) / np.sqrt(12))
+
+    def value(self, xi: ArrayLike) -> FloatArray:
+        """Return the values that standard normal numbers stand for."""
+        return np.asarray(self.low + (self.high - self.low) * ndtr(_within(xi)))
+
+    def slope(self, xi: ArrayLike) -> FloatArray:
+        """Return the derivatives of the values."""
+        density = np.exp(-0.5 * np.square(_within(xi))) / np.sqrt(2 * np.pi)
+        return np.asarray((self.high - self.low) * density)
+
+    def standard(self, value: ArrayLike) -> FloatArray:
+        """Return the standard normal numbers of values; of those outside, the farthest."""
+        share = (np.asarray(value) - self.low) / (self.high - self.low)
+        return _within(ndtri(np.clip(share, 0.0, 1.0)))
+
+
+@dataclass(frozen=True)
+class Normal:
+    """A normal distribution, cut where it is next to nothing."""
+
+    mean: float
+    std: float
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """The least and the largest value."""
+        return self.mean - FARTHEST * self.std, self.mean + FARTHEST * self.std
+
+    def value(self, xi: ArrayLike) -> FloatArray:
+        """Return the values that standard normal numbers stand for."""
+        return np.asarray(self.mean + self.std * _within(xi))
+
+    def slope(self, xi: ArrayLike) -> FloatArray:
+        """Return the derivatives of the values."""
+        return np.full(np.shape(xi), self.std)
+
+    def standard(self, value: ArrayLike) -> FloatArray:
+        """Return the standard normal numbers of values; of those outside, the farthest."""
+        return _within((np.asarray(value) - self.mean) / self.std)
+
+
+Distribution = Uniform | Normal
+Belief = float | Distribution
+"""Of one parameter: its value, if it is known."""
+
+
+def _within(xi: ArrayLike) -> FloatArray:
+    return np.clip(xi, -FARTHEST, FARTHEST)
+
+
+def belief_of(name: str, given: object, low: float, high: float, unit: str) -> Belief:
+    """Return what a number, a pair or a mapping of mean and std says of a parameter.
+
+    Raises
+    ------
+    ArgumentError
+        If it is something else, or reaches beyond [low, high].
+    """
+    must = "be a number, a pair (low, high), or a normal distribution (mean and std)"
+    if isinstance(given, Mapping):
+        require(set(given) == {"mean", "std"}, name, must, f"it is {shown(dict(given))}")
+        parts = [number_in(f"{name}.{part}", given[part], -1e9, 1e9) for part in ("mean", "std")]
+        given = Normal(*parts)
+    if isinstance(given, tuple | list):
+        pair = reals(name, given, must)
+        require(pair.shape == (2,), name, must, f"it is {shown(given)}")
+        given = Uniform(*pair.tolist())
+    if not isinstance(given, Uniform | Normal):
+        try:
+            return number_in(name, given, low, high, unit)
+        except ArgumentError as error:
+            if np.ndim(given) == 0 and not isinstance(given, str | None):  # type: ignore[arg-type]
+                raise
+            raise ArgumentError(name, must, f"it is {shown(given)}") from error
+    least, most = given.range
+    wide = bool(np.isfinite([least, most]).all()) and least < most
+    require(wide, name, "be a distribution of some width", f"it is {shown(given)}")
+    within = f"stay from {low:g} to {high:g} {unit}".rstrip()
+    reaches = f"it reaches from {least:g} to {most:g}"
+    require(low <= least and most <= high, name, within, reaches)
+    return given

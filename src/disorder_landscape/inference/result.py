@@ -1,0 +1,191 @@
+"""What `infer` returns: the posterior, and what follows from it."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+
+from disorder_landscape.inference.attempt import Attempt
+from disorder_landscape.inference.posterior.importance_sampling import tempered
+from disorder_landscape.inference.problem.distributions import Distribution
+from disorder_landscape.inference.problem.gaussian import log_density
+from disorder_landscape.inference.problem.measurement import Measurement
+from disorder_landscape.inference.problem.observation import Observation, objective
+from disorder_landscape.inference.problem.parameters import BY_NAME
+from disorder_landscape.inference.problem.unknowns import Device, Unknowns, share_settings
+from disorder_landscape.model.parameters import FloatArray
+from disorder_landscape.model.quantities import AXES, CONDUCTANCES, with_units
+from disorder_landscape.observables.visibility import topological_visibility
+from disorder_landscape.solver import routes
+
+MAP_POINTS = 61, 81
+"""Of the maps of T_IV and P(topological), along μ and B."""
+GAPS = 49
+"""Energies from zero to the gap of the parent for which P_gap is given."""
+OPEN = 0.8
+"""An unknown is not fixed whose standard deviation is more than this share of the prior's."""
+ALIKE = 0.95
+"""Two are not told apart whose correlation is larger than this."""
+HERMITE = 61
+"""Nodes by which the mean of a parameter's distribution is taken."""
+
+
+def result_of(observation: Observation, chosen: Attempt, samples: int, seed: int) -> xr.Dataset:
+    """Return the dataset of `infer`, but for the attributes that tell how it was found."""
+    m, unknowns = observation.measurement, observation.unknowns
+    mean, covariance = chosen.answer.mean, chosen.answer.covariance
+    X = chosen.draw(np.random.default_rng([seed, 2**31 + 1]), samples)
+    maps = _maps(m.mu, m.B)
+    T_IV = _visibility(observation, np.concatenate([mean[None], X]), maps)
+    G = observation.conductances(mean[None])[0]
+    grid, gaps = ("map_mu", "map_B"), _gap_energies(observation)
+    data = {
+        "potential": (("sample", "site"), unknowns.potential(X)),
+        "potential_mean": ("site", unknowns.potential(mean)),
+        "potential_std": ("site", unknowns.potential_std(covariance)),
+        "misfit": ("channel", observation.misfit(chosen.data)),
+        **{name: (AXES, G[..., c]) for c, name in enumerate(CONDUCTANCES)},
+        "T_IV": (("lead", *grid), T_IV[0]),
+        "P_topological": (grid, (T_IV[1:, 0] < 0).mean(axis=0)),
+        "P_gap": (("gap", *AXES[:2]), _gap_probability(observation, X, gaps)),
+    }
+    coords = {
+        "site": np.arange(unknowns.given.sites),
+        "channel": list(CONDUCTANCES),
+        "lead": ["L", "R"],
+        "gap": gaps,
+        **{axis: getattr(m, axis) for axis in AXES},
+        **dict(zip(grid, maps, strict=True)),
+    }
+    if unknowns.given.components is not None:
+        labels = unknowns.label_slopes(mean)[: unknowns.given.components]
+        std = np.sqrt(np.einsum("ci,ij,cj->c", labels, covariance, labels))
+        data |= {
+            "components": (("sample", "component"), unknowns.components(X)),
+            "components_mean": ("component", unknowns.components(mean)),
+            "components_std": ("component", std),
+        }
+        coords["component"] = np.arange(1, unknowns.given.components + 1)
+    dataset = with_units(xr.Dataset(data, coords=coords))
+    for name, belief in unknowns.parameters.items():
+        k = unknowns.names.index(name)
+        average, std = moments(belief, mean[k], np.sqrt(covariance[k, k]))
+        for ending, dims, value in (
+            ("", ("sample",), unknowns.parameter(name, X)),
+            ("_mean", (), average),
+            ("_std", (), std),
+        ):
+            of = {"": "", "_mean": "mean of the ", "_std": "standard deviation of the "}[ending]
+            attrs = {"long_name": of + BY_NAME[name].long_name, "units": BY_NAME[name].unit or "1"}
+            dataset[name + ending] = (dims, value, attrs)
+    dataset.attrs = {
+        **unknowns.given.known,
+        **evidence(observation, chosen, X),
+        **left_open(unknowns, covariance),
+        "prior": json.dumps(unknowns.given.to_dict()),
+    }
+    if m.axis != "mu":
+        dataset = dataset.rename(mu=m.axis, map_mu=f"map_{m.axis}")
+    return dataset
+
+
+def moments(belief: Distribution, mean: float, std: float) -> tuple[float, float]:
+    """Return mean and standard deviation of a parameter whose ξ is normal with these."""
+    at, weight = np.polynomial.hermite_e.hermegauss(HERMITE)
+    values, weight = belief.value(mean + std * at), weight / weight.sum()
+    average = float(weight @ values)
+    return average, float(np.sqrt(weight @ (values - average) ** 2))
+
+
+def evidence(observation: Observation, chosen: Attempt, X: FloatArray) -> dict[str, float]:
+    """Return log_evidence and effective_sample_size, from samples weighted by the exact posterior.
+
+    Parameters
+    ----------
+    observation : Observation
+    chosen : Attempt
+        Its own importance samples serve, if it has any.
+    X : array, shape (sample, unknown)
+        Samples of its answer, which serve otherwise.
+    """
+    found = chosen.importance_samples
+    if found is None:
+        height = objective(observation, X, observation.simulate(X))
+        found = tempered(X, -0.5 * height - log_density(chosen.answer, X), 0.0)
+    of_the_errors = -0.5 * np.log(2 * np.pi * observation.variance).sum()
+    return {
+        "log_evidence": found.log_mean_weight + of_the_errors,
+        "effective_sample_size": found.effective_sample_size,
+    }
+
+
+def left_open(unknowns: Unknowns, covariance: FloatArray) -> dict[str, str]:
+    """Return as words what the data do not fix, and what they do not tell apart.
+
+    not_fixed names unknowns; of the disorder's it says how many of their combinations. Both are
+    empty where there is nothing.
+    """
+    n, std = unknowns.of_disorder, np.sqrt(np.diag(covariance))
+    not_fixed = [name for name, one in zip(unknowns.names[n:], std[n:], strict=True) if one > OPEN]
+    open_ways = int((np.linalg.eigvalsh(covariance[:n, :n]) > OPEN**2).sum())
+    if open_ways:
+        not_fixed.insert(0, f"{open_ways} of {n} combinations of the disorder's unknowns")
+    with_mean = range(n - ("mean" in unknowns.names), std.size)
+    pairs = [
+        f"{unknowns.names[i]} and {unknowns.names[j]} ({covariance[i, j] / std[i] / std[j]:+.3f})"
+        for i in with_mean
+        for j in with_mean
+        if i < j and abs(covariance[i, j]) > ALIKE * std[i] * std[j]
+    ]
+    return {"not_fixed": ", ".join(not_fixed), "not_told_apart": ", ".join(pairs)}
+
+
+def _devices(observation: Observation, X: FloatArray, mu: FloatArray) -> list[Device]:
+    """Return the devices of samples at other values of the measured axis."""
+    return observation.unknowns.devices(X, replace(observation.measurement, mu=mu))
+
+
+def _visibility(
+    observation: Observation, X: FloatArray, maps: tuple[FloatArray, FloatArray]
+) -> FloatArray:
+    """Return T_IV of samples on a grid of the measured axis and B, shape (sample, lead, mu, B)."""
+    devices, theta = _devices(observation, X, maps[0]), observation.measurement.theta
+    if share_settings(devices):
+        wires, mu = [device.wire for device in devices], devices[0].setup.mu
+        return topological_visibility(wires, mu, maps[1], theta=theta).to_numpy()
+    each = [
+        topological_visibility(one.wire, one.setup.mu, maps[1], theta=theta).to_numpy()
+        for one in devices
+    ]
+    return np.stack(each)
+
+
+def _gap_energies(observation: Observation) -> FloatArray:
+    """Return energies from zero to the largest gap that the parent may have, in meV."""
+    return np.linspace(0.0, observation.unknowns.given.extremes("delta0")[1], GAPS)
+
+
+def _gap_probability(observation: Observation, X: FloatArray, gaps: FloatArray) -> FloatArray:
+    """Return the share of samples whose lowest excitation is above each energy (gap, mu, B)."""
+    m: Measurement = observation.measurement
+    above = np.zeros((gaps.size, m.mu.size, m.B.size))
+    visibility = _visibility(observation, X, (m.mu, m.B))[:, 0]
+    for device, T_IV in zip(_devices(observation, X, m.mu), visibility, strict=True):
+        closed = replace(device.wire, dissipation=0.0, parent_dissipation=0.0)
+        levels = routes.levels([closed], device.setup.mu, m.B, 2, m.theta)[0]
+        levels = np.where(np.isnan(levels), closed.delta0, levels)
+        excitation = np.where(T_IV < 0, levels[..., 1], levels[..., 0])
+        above += excitation > gaps[:, None, None]
+    return above / len(X)
+
+
+def _maps(mu: FloatArray, B: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return fine grids of the measured axis and of B over the range of the measurement."""
+    fine_mu, fine_B = (
+        np.linspace(axis[0], axis[-1], points) if axis.size > 1 else axis
+        for axis, points in zip((mu, B), MAP_POINTS, strict=True)
+    )
+    return fine_mu, fine_B
