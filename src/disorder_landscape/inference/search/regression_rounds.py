@@ -28,7 +28,7 @@ import numpy as np
 from disorder_landscape.inference.checkpoint import Cache, uncached
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.observation import Observation, overall_misfit
-from disorder_landscape.inference.search.gauss_newton import laplace, linearise
+from disorder_landscape.inference.search.gauss_newton import linearise, precision_of
 from disorder_landscape.inference.search.network_features import NetworkFeatures
 from disorder_landscape.inference.search.proposals import ProposalSamples
 from disorder_landscape.inference.search.regression import residual_variance, ridge_regression
@@ -62,8 +62,9 @@ class RoundSettings:
     """Rounds end when a linear fit to the conductances leaves less than this part of the noise and
     …"""
     times_gauss_newton: float = 2.0
-    """… the spread is less than this many times that of a Gauss–Newton step. Much noise hides that
-    the conductances are not linear, and such steps would end in another optimum. …"""
+    """… the distribution is less than this many times as wide as that of a Gauss–Newton step, root
+    mean square over the unknowns' directions. Much noise hides that the conductances are not
+    linear, and such steps would end in another optimum. …"""
     patience: int = 8
     """… They also end when for so many rounds neither residual nor spread has decreased, …"""
     least_improvement: float = 0.95
@@ -140,9 +141,8 @@ def regression_rounds(
         yield one
         straight = one.unexplained < settings.unexplained
         if straight and share == 1:
-            make = partial(_laplace_spread, observation, one)
-            laplaces = cache(f"laplace.{key}.{number}", make)
-            if one.spread < settings.times_gauss_newton * laplaces["spread"]:
+            make = partial(_times_laplace, observation, one)
+            if cache(f"laplace.{key}.{number}", make)["times"] < settings.times_gauss_newton:
                 return
         narrower = one.spread < settings.least_improvement * narrowest
         since = 0 if narrower or one.unexplained < least else since + 1
@@ -157,11 +157,11 @@ def regression_rounds(
         distribution = one.distribution
 
 
-def _laplace_spread(observation: Observation, one: Round) -> dict[str, Any]:
-    """Return the `spread` in meV of the posterior if data were linear about a round's mean."""
-    slope = linearise(observation, one.distribution)[1]
-    posterior = laplace(observation, one.distribution.mean, slope)
-    return {"spread": observation.unknowns.site_std(posterior.covariance)}
+def _times_laplace(observation: Observation, one: Round) -> dict[str, Any]:
+    """Return how many `times` a round is as wide as the posterior if data were linear there."""
+    precision = precision_of(observation, linearise(observation, one.distribution)[1])
+    ratios = precision @ one.distribution.covariance
+    return {"times": float(np.sqrt(np.trace(ratios) / len(ratios)))}
 
 
 def _no_samples(
