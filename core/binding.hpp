@@ -29,6 +29,8 @@ inline ArrayOf<N> new_array(const std::vector<size_t>& shape) {
 }
 
 inline std::vector<Wire> wires_of(const Matrix& V, const Matrix& parameters) {
+    if (parameters.shape(0) != V.shape(0) || parameters.shape(1) != PARAMETERS)
+        throw nb::value_error("parameters must be as many rows as V has, of as many numbers as a wire has parameters");
     return wires_of(int(V.shape(0)), int(V.shape(1)), V.data(), parameters.data());
 }
 

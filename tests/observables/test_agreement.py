@@ -229,7 +229,7 @@ def test_the_outgoing_modes_are_those_that_decay_a_little_above_the_axis():
         t = 10 ** rng.uniform(-1, 3)
         s, zeeman = t * 10 ** rng.uniform(-4, 1), t * 10 ** rng.uniform(-4, 0.3)
         mu = rng.choice([0.0, 4 * t, 2 * t]) + t * rng.choice([-1, 1]) * 10 ** rng.uniform(-3, 0)
-        parameters = np.array([[t, 0.0, 0.0, 0.0, 1.0, mu, s, zeeman, 0.0]])
+        parameters = np.array([[t, 0.0, 0.0, 0.0, 1.0, mu, s, zeeman, 0.0, 0.0]])
         arguments = np.zeros((1, 2)), parameters, 1.0, np.zeros(1), 0.0
         sigma = compiled.core.lead_self_energies(*arguments)[0, 1, 0]
         T = np.array([[-t, -s], [s, -t]], dtype=complex)

@@ -67,3 +67,10 @@ def test_a_pivot_that_is_zero_is_gone_round():
     pivoted = arithmetics.complex_conductance(wire, mu, B, omega, growth_limit=0.0)
     assert_allclose(found, pivoted, rtol=1e-9)
     assert (found[..., :2] > 0).all()
+
+
+def test_wires_of_another_number_of_parameters_are_refused():
+    """Not read beyond what there is of them."""
+    for parameters in (np.ones((1, 9)), np.ones((1, 11)), np.ones((2, 10))):
+        with pytest.raises(ValueError, match="parameters must be as many rows as V has"):
+            compiled.core.lead_self_energies(np.zeros((1, 2)), parameters, 1.0, np.zeros(1), 0.0)
