@@ -45,7 +45,7 @@ def test_rounds_lead_from_the_prior_to_the_truth(seed):
     assert last.unexplained < SETTINGS.unexplained
     assert last.spread < 0.02 * found[0].spread
     assert last.distribution.squared_distance(truth) < 3 * SIZE
-    optimum = gauss_newton(waves, last.distribution)
+    optimum = gauss_newton(waves, last.distribution.mean)
     assert optimum.squared_distance(truth) < 3 * SIZE
 
 
@@ -91,7 +91,7 @@ def test_rounds_go_on_as_long_as_they_know_less_than_a_step_would():
         found = list(regression_rounds(waves, UNKNOWNS.prior, [0], settings))
         counts[near, patience] = len(found)
         if near == 2.0:
-            step = linearise(waves, found[-1].distribution)[1]
+            step = linearise(waves, found[-1].distribution.mean)[1]
             bar = UNKNOWNS.site_std(np.linalg.inv(precision_of(waves, step)))
             assert found[-1].spread < 2.0 * bar
     assert counts[np.inf, 3] == 2  # one round on some data, one on all

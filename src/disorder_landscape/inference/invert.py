@@ -6,7 +6,7 @@ importance sampling. There are attempts until the verdict is known.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import chain
@@ -23,18 +23,27 @@ from disorder_landscape.inference.posterior.importance_sampling import (
 )
 from disorder_landscape.inference.problem.gaussian import Gaussian, log_density
 from disorder_landscape.inference.problem.observation import Observation, objective
+from disorder_landscape.inference.search.agreed_optimum import agreed_optimum
 from disorder_landscape.inference.search.first_guess import network_guess
 from disorder_landscape.inference.search.gauss_newton import gauss_newton
 from disorder_landscape.inference.search.network_features import NetworkFeatures, network_features
 from disorder_landscape.inference.search.regression_rounds import (
     WITH_NETWORK_FEATURES,
+    Round,
     RoundSettings,
     regression_rounds,
 )
-from disorder_landscape.inference.verdict import NOT_CONVERGED, is_surely_right, verdict
+from disorder_landscape.inference.verdict import (
+    NOT_CONVERGED,
+    is_surely_right,
+    verdict,
+)
 from disorder_landscape.learning.model import TrainedModel
-from disorder_landscape.model.parameters import BOLTZMANN
+from disorder_landscape.model.parameters import BOLTZMANN, FloatArray
 
+TRIED_FROM = 0.1
+"""Gauss–Newton steps are tried if the distribution of V is narrower than this in meV: they find the
+truth from guesses of networks that are some 5 and 30 µeV off."""
 STRAIGHT = 0.25
 """Whether the posterior is a normal distribution is asked if the error bar of V is more than this
 many kT, or …"""
@@ -117,15 +126,10 @@ def invert(
         make = partial(network_guess, model, observation, rng)
         guess = _cached_gaussian(cache, "guess", make)
     for number in range(settings.attempts):
-        found = guess if guess is not None and number == 0 else prior
-        count, more = 0, _with_more_samples(settings, number)
-        for one in regression_rounds(observation, found, [seed, number], more, cache, features):
-            progress(Step(number, ROUND, count, one.misfit, one.spread))
-            found, count = one.distribution, count + 1
-        report = partial(_report, progress, number, GAUSS_NEWTON)
-        make = partial(gauss_newton, observation, found, progress=report)
-        answer = _cached_gaussian(cache, f"gauss_newton.{number}", make)
-        attempts.append(attempt_at(observation, found, answer, count))
+        start = guess if guess is not None and number == 0 else prior
+        more = _with_more_samples(settings, number)
+        rounds = regression_rounds(observation, start, [seed, number], more, cache, features)
+        attempts.append(_attempt(observation, start, rounds, [seed], number, cache, progress))
         outcome = attempts
         if number > 0 or settings.attempts == 1 or is_surely_right(observation):
             report = partial(_report, progress, number, IMPORTANCE_SAMPLING)
@@ -134,6 +138,56 @@ def invert(
         if verdict(observation, outcome) != NOT_CONVERGED:
             break
     return outcome
+
+
+def _attempt(
+    observation: Observation,
+    start: Gaussian,
+    rounds: Iterator[Round],
+    seed: Sequence[int],
+    number: int,
+    cache: Cache,
+    progress: Progress,
+) -> Attempt:
+    """Return what rounds and Gauss–Newton steps come to.
+
+    Steps are tried as soon as the distribution is narrow enough, and whenever it is half as wide as
+    it was then. Their optimum ends the rounds if it fits.
+    """
+
+    def steps(of: Observation, x: FloatArray, name: str) -> Gaussian:
+        report = partial(_report, progress, number, GAUSS_NEWTON)
+        make = partial(gauss_newton, of, x, progress=report)
+        return _cached_gaussian(cache, f"gauss_newton.{number}.{name}", make)
+
+    found, count = start, 0
+    spread = observation.unknowns.site_std(start.covariance)
+    next_try = TRIED_FROM
+    while True:
+        if spread < next_try:
+            next_try = spread / 2
+            rng = np.random.default_rng([*seed, number, count, 2])
+            near = agreed_optimum(observation, found, rng, partial(_named, steps, count))
+            if near is not None:
+                answer = steps(observation, near, f"{count}")
+                attempt = attempt_at(observation, found, answer, count)
+                if attempt.fits:
+                    return attempt
+        one = next(rounds, None)
+        if one is None:
+            return attempt_at(observation, found, steps(observation, found.mean, "last"), count)
+        progress(Step(number, ROUND, count, one.misfit, one.spread))
+        found, count, spread = one.distribution, count + 1, one.spread
+
+
+def _named(
+    steps: Callable[[Observation, FloatArray, str], Gaussian],
+    rounds: int,
+    of: Observation,
+    x: FloatArray,
+    start: int,
+) -> Gaussian:
+    return steps(of, x, f"{rounds}.{start}")
 
 
 def usual_settings(features: NetworkFeatures | None) -> InversionSettings:

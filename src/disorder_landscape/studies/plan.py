@@ -17,6 +17,7 @@ from disorder_landscape.config import checked
 from disorder_landscape.studies.accuracy import AccuracyPlan
 from disorder_landscape.studies.calibration import CalibrationPlan
 from disorder_landscape.studies.components import ComponentsPlan
+from disorder_landscape.studies.devices import DevicesPlan
 from disorder_landscape.studies.inversions import InversionsPlan
 from disorder_landscape.studies.noise import NoisePlan
 from disorder_landscape.studies.odd_wires import OddWiresPlan
@@ -36,6 +37,7 @@ AnyPlan = (
     AccuracyPlan
     | CalibrationPlan
     | ComponentsPlan
+    | DevicesPlan
     | InversionsPlan
     | NoisePlan
     | OddWiresPlan

@@ -83,5 +83,5 @@ class SmoothersPlan(FreshWiresPlan):
     ) -> tuple[FloatArray, float]:
         """Return the same of one attempt of ours."""
         *_, last = regression_rounds(observation, start, [seed, 0], RoundSettings())
-        answer = gauss_newton(observation, last.distribution)
+        answer = gauss_newton(observation, last.distribution.mean)
         return answer.mean, observation.unknowns.site_std(answer.covariance)

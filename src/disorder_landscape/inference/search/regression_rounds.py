@@ -159,7 +159,7 @@ def regression_rounds(
 
 def _times_laplace(observation: Observation, one: Round) -> dict[str, Any]:
     """Return how many `times` a round is as wide as the posterior if data were linear there."""
-    precision = precision_of(observation, linearise(observation, one.distribution)[1])
+    precision = precision_of(observation, linearise(observation, one.distribution.mean)[1])
     ratios = precision @ one.distribution.covariance
     return {"times": float(np.sqrt(np.trace(ratios) / len(ratios)))}
 

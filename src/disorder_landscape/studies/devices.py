@@ -1,0 +1,213 @@
+"""Kind "devices": inversions of devices that are drawn from a prior, whatever it leaves unknown.
+
+Each row draws a device, measures it and inverts the measurement. Conductances are averaged by
+quadrature, which is another route than the inversion's own, and have errors. Devices, errors and
+answers are functions of (name, noise, index) alone.
+"""
+
+from __future__ import annotations
+
+import time
+import zlib
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Annotated, ClassVar, Literal
+
+import numpy as np
+import pandas as pd
+from pydantic import Field
+
+from disorder_landscape.chain import REPOSITORY
+from disorder_landscape.config import Positive
+from disorder_landscape.inference.attempt import best
+from disorder_landscape.inference.invert import invert
+from disorder_landscape.inference.problem.measurement import Measurement
+from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
+from disorder_landscape.inference.problem.prior import Prior
+from disorder_landscape.inference.problem.unknowns import Device, Unknowns
+from disorder_landscape.inference.verdict import verdict
+from disorder_landscape.model.disorder import mean_reduction, smooth_noise
+from disorder_landscape.model.parameters import B_MAX, BIAS, TEMPERATURE, FloatArray, Nanowire
+from disorder_landscape.solver.quadrature import thermal_quadrature
+from disorder_landscape.studies.calibration import coverage, joint_coverage
+from disorder_landscape.studies.fresh_wires import SEED, Noise
+from disorder_landscape.studies.rows import Row, rounded
+from disorder_landscape.studies.study import Derived, Part, Place, Plan
+
+PRIORS = REPOSITORY / "configs" / "priors"
+
+
+@dataclass(frozen=True, order=True)
+class Task:
+    """One inversion: the name of a group of devices, the noise in e²/h, the index of a device."""
+
+    name: str
+    noise: float
+    index: int
+
+
+class Devices(Part):
+    """So many devices of a prior, measured on a grid with each noise."""
+
+    name: str
+    prior: str
+    """Name of a file in configs/priors, without its ending."""
+    mu: tuple[float, float, Positive]
+    """Least and largest value of the measured axis, and number of points."""
+    B_points: Positive
+    """Between zero and the paper's largest field."""
+    biases: Positive
+    """Between the paper's largest ones."""
+    noise: tuple[Annotated[Noise, Field(gt=0)], ...]
+    """In e²/h."""
+    count: Positive
+
+    @property
+    def grid(self) -> Measurement:
+        """What is measured, all conductances zero."""
+        low, high, points = self.mu
+        mu, B = np.linspace(low, high, points), np.linspace(0, B_MAX, self.B_points)
+        bias = np.linspace(BIAS[0], BIAS[-1], self.biases)
+        G = np.zeros((mu.size, B.size, bias.size, 4))
+        return Measurement(G, mu, B, bias, 0.0, Nanowire.barrier, TEMPERATURE)
+
+    @cached_property
+    def unknowns(self) -> Unknowns:
+        """What is unknown of the devices."""
+        return Unknowns(Prior.from_toml(PRIORS / f"{self.prior}.toml").for_measurement(self.grid))
+
+
+class DevicesPlan(Plan):
+    """Inversions of devices of some priors."""
+
+    kind: Literal["devices"]
+    devices: tuple[Devices, ...]
+
+    keys: ClassVar = ("name", "noise", "index")
+
+    def tasks(self) -> Sequence[Task]:
+        """Return the tasks, by name, noise and index."""
+        return sorted(
+            Task(group.name, noise, index)
+            for group in self.devices
+            for noise in group.noise
+            for index in range(group.count)
+        )
+
+    def rows(self, task: Task, place: Place) -> list[dict[str, object]]:
+        """Draw a device, measure it, invert the measurement."""
+        (group,) = (group for group in self.devices if group.name == task.name)
+        return [device_row(task, group)]
+
+    def derived(self, rows: Sequence[Row], place: Place) -> Derived:
+        """Return coverage and errors, and how much of each parameter's uncertainty is left."""
+        table = pd.DataFrame(rows)
+        numbers = {}
+        for (name, noise), some in table.groupby(["name", "noise"]):
+            (group,) = (group for group in self.devices if group.name == name)
+            numbers[f"{name}, {noise:g}"] = summary(some, group.unknowns)
+        return Derived(numbers)
+
+
+def drawn_device(group: Devices, task: Task) -> tuple[Device, FloatArray]:
+    """Return a device of the prior, as it is measured, and its unknowns (unknown,).
+
+    The disorder of a whole landscape is drawn from the noise itself; the unknowns then are those
+    of the potential that is nearest to it.
+    """
+    rng = np.random.default_rng([SEED, zlib.crc32(task.name.encode()), task.index])
+    unknowns, given = group.unknowns, group.unknowns.given
+    x = rng.normal(size=len(unknowns.names))
+    device = unknowns.devices(x[None], group.grid)[0]
+    if given.components is not None:
+        return device, x
+    disorder = (given.correlation_length, "sum", given.amplitude)
+    V = smooth_noise(rng, given.sites, *disorder)
+    V = V - V.mean() * (1 - mean_reduction(given.sites, *disorder, given.mean_std))
+    parameters = {name: float(unknowns.parameter(name, x)) for name in unknowns.parameters}
+    wire = replace(device.wire, potential=V)
+    return Device(wire, device.setup), unknowns.of_device(np.empty(0), V, parameters)
+
+
+def measured_device(device: Device, group: Devices, task: Task) -> Observation:
+    """Return the measurement of a device, with errors."""
+    setup, grid = device.setup, group.grid
+    exact = thermal_quadrature([device.wire], setup.mu, grid.B, setup.bias, setup.temperature)
+    rng = np.random.default_rng([SEED, zlib.crc32(task.name.encode()), task.index, 1])
+    G = exact.conductance[0]
+    G = G + task.noise * rng.normal(size=G.shape)
+    return Observation(replace(grid, G=G), group.unknowns, noise_of_channels(task.noise))
+
+
+def device_row(task: Task, group: Devices) -> dict[str, object]:
+    """Invert the measurement of a device and compare the answer with the truth.
+
+    Returns
+    -------
+    dict
+        `site_error` of V in meV, root mean square over the sites, and its error bar `spread`; the
+        same of V less its mean, `shape_error` and `shape_spread`; `mahalanobis`, the squared
+        distance of the truth in standard deviations; verdict and cost; and, as text, for each
+        unknown `z_scores`, the truth's distance in standard deviations, and `widths`, the standard
+        deviation as a share of the prior's.
+    """
+    device, truth = drawn_device(group, task)
+    observation = measured_device(device, group, task)
+    begun = time.perf_counter()
+    attempts = invert(observation, None, task.index)
+    seconds = time.perf_counter() - begun
+    chosen, unknowns = best(attempts), group.unknowns
+    mean, covariance = chosen.answer.mean, chosen.answer.covariance
+    off = unknowns.potential(mean) - device.wire.potential
+    n, L = unknowns.of_disorder, unknowns.to_potential
+    L = L - L.mean(axis=0)
+    shape_variance = np.einsum("si,ij,sj->s", L, covariance[:n, :n], L).mean()
+    std = np.sqrt(np.diag(covariance))
+    samples = chosen.importance_samples
+    row: dict[str, object] = {
+        "name": task.name,
+        "noise": task.noise,
+        "index": task.index,
+        "site_error": np.sqrt((off**2).mean()),
+        "spread": unknowns.site_std(covariance),
+        "shape_error": off.std(),
+        "shape_spread": np.sqrt(shape_variance),
+        "mahalanobis": chosen.answer.squared_distance(truth),
+        "effective_sample_size": np.nan if samples is None else samples.effective_sample_size,
+        "excess": chosen.excess,
+        "verdict": verdict(observation, attempts),
+        "attempts": len(attempts),
+        "rounds": sum(attempt.rounds for attempt in attempts),
+        "seconds": seconds,
+    }
+    return {
+        **rounded(row),
+        "z_scores": " ".join(f"{z:.3f}" for z in (truth - mean) / std),
+        "widths": " ".join(f"{width:.3g}" for width in std),
+    }
+
+
+def summary(table: pd.DataFrame, unknowns: Unknowns) -> dict[str, object]:
+    """Return what the rows of one group and noise come to.
+
+    Errors in µeV; coverage in percent of the intervals of COVERAGE, of each unknown and of all at
+    once; of each parameter the median width of the posterior as a share of the prior's.
+    """
+    widths = np.array([text.split() for text in table["widths"]], dtype=float)
+    names = list(unknowns.names)[unknowns.of_disorder :]
+    return {
+        "devices": len(table),
+        "error": round(1e3 * table["site_error"].median(), 3),
+        "error_90": round(1e3 * table["site_error"].quantile(0.9), 3),
+        "spread": round(1e3 * table["spread"].median(), 3),
+        "shape_error": round(1e3 * table["shape_error"].median(), 3),
+        "verdicts": table["verdict"].value_counts().to_dict(),
+        "coverage": [round(100 * float(part), 1) for part in coverage(table)],
+        "joint_coverage": [round(100 * float(part), 1) for part in joint_coverage(table)],
+        "seconds": round(table["seconds"].median()),
+        "widths": {
+            name: float(f"{np.median(widths[:, unknowns.of_disorder + k]):.3g}")
+            for k, name in enumerate(names)
+        },
+    }
