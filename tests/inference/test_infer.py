@@ -181,7 +181,7 @@ def test_an_interrupted_run_goes_on(measured, inferred, tmp_path):
 
     def interrupt(step):
         first.append(step)
-        if step.number == 2:
+        if len(first) == 6:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
@@ -189,9 +189,10 @@ def test_an_interrupted_run_goes_on(measured, inferred, tmp_path):
     other = infer(measured, noise=0.002, checkpoint=checkpoint)  # ignores what is another run's …
     assert other.identical(infer(measured, noise=0.002))
     result = infer(measured, checkpoint=checkpoint, progress=second.append)
-    assert second[:3] == first  # … and leaves it there
+    rounds = [[step for step in steps if step.stage == "round"] for steps in (first, second)]
+    assert rounds[1][: len(rounds[0])] == rounds[0]  # … and leaves it there
+    assert len(rounds[1]) == inferred.attrs["rounds"]
     stages = [step.stage for step in second]
-    assert stages.count("round") == inferred.attrs["rounds"]
     assert stages[-1] == "Gauss–Newton"
     assert second[-1].misfit < 1.1 * NOISE
     spread = float(np.sqrt((inferred["potential_std"] ** 2).mean()))
@@ -210,7 +211,7 @@ def test_a_checkpoint_of_an_older_version_is_ignored(measured, inferred, tmp_pat
     runs = read_json(checkpoint, "checkpoint", "be one")
     assert runs.pop(64 * "0") == old
     (new,) = runs.values()
-    assert "gauss_newton.0" in new
+    assert any(name.startswith("gauss_newton.0") for name in new)
 
 
 def test_a_run_with_another_network_starts_anew(measured, tmp_path):
