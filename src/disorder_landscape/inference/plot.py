@@ -114,6 +114,7 @@ def _components(panel: Any, result: xr.Dataset) -> None:
     panel.errorbar(result["component"], c, bar, fmt="k.", capsize=2, lw=0.8)
     panel.axhline(0.0, color="0.7", lw=0.5)
     panel.set(xlabel="component $n$", ylabel="$c_n$ [meV]")
+    panel.xaxis.get_major_locator().set_params(integer=True)
 
 
 def _parameters(panel: Any, result: xr.Dataset) -> None:
@@ -127,7 +128,7 @@ def _parameters(panel: Any, result: xr.Dataset) -> None:
         panel.errorbar(mean, row, xerr=std, fmt="k.", capsize=2, lw=0.8)
         panel.text(1.02, row, parameter_with_std(result, name), va="center")
         panel.text(-0.02, row, f"{name}, before: {prior_as_text(belief)}", va="center", ha="right")
-    panel.set(xlim=(-0.7, 1.5), ylim=(len(known) - 0.4, -0.6))
+    panel.set(xlim=(-0.75, 1.65), ylim=(len(known) - 0.4, -0.6))
     panel.axis("off")
     panel.set_title("parameters, each on the range that it may have (grey)")
 
