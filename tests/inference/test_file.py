@@ -2,6 +2,7 @@
 
 from functools import partial
 
+import numpy as np
 import pytest
 import xarray as xr
 
@@ -15,7 +16,7 @@ from disorder_landscape.inference.file import (
     infer_one_of_many,
     tasks_of_folder,
 )
-from measurements import write_measurements
+from measurements import CONFIG, write_measurements
 
 
 @pytest.fixture(scope="module")
@@ -113,3 +114,29 @@ def test_of_two_processes_with_one_output_one_waits(folder, inferred, tmp_path):
     assert [outcome.verdict for outcome in outcomes] == ["converged"] * 2
     assert [path.name for path in tmp_path.iterdir()] == ["0.nc"]
     xr.testing.assert_identical(content(tmp_path / "0.nc"), content(inferred / "0.nc"))
+
+
+def test_a_prior_serves_instead_of_a_model(monkeypatch, capsys, folder, inferred, tmp_path):
+    """With the same in its file; another question if its file changes."""
+    prior, (low, high) = tmp_path / "prior.toml", CONFIG.alpha_range
+    said = f"components = {CONFIG.components}\nsites = {CONFIG.sites}\n"
+    prior.write_text(f"{said}alpha = [{low}, {high}]\n" if low < high else said)
+    command = ["infer", folder / "0.nc", "--prior", prior, "--samples", 4]
+    code, out, err = landscape(monkeypatch, capsys, *command, "-o", tmp_path / "out.nc")
+    assert (code, "verdict         converged" in out) == (0, True), err
+    found, expected = content(tmp_path / "out.nc"), content(inferred / "0.nc")
+    np.testing.assert_allclose(found["potential_mean"], expected["potential_mean"], atol=1e-4)
+    assert set(found.variables) == set(expected.variables)
+    several = ["infer", folder / "0.nc", folder / "1.nc", *command[2:], "-o", tmp_path / "all"]
+    assert landscape(monkeypatch, capsys, *several)[0] == 0
+    prior.write_text(f"{said}alpha = [6.0, 10.0]\n")
+    code, _, err = landscape(monkeypatch, capsys, *several)
+    assert code == 2
+    assert "output must be a folder for results of these measurements" in err
+
+
+def test_neither_prior_nor_model_is_refused(monkeypatch, capsys, folder, tmp_path):
+    command = ["infer", folder / "0.nc", "-o", tmp_path / "out.nc"]
+    code, _, err = landscape(monkeypatch, capsys, *command)
+    assert code == 2
+    assert "prior must be given, or a model whose dataset says what is known" in err
