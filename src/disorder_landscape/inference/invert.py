@@ -167,7 +167,7 @@ def _attempt(
         if spread < next_try:
             next_try = spread / 2
             rng = np.random.default_rng([*seed, number, count, 2])
-            near = agreed_optimum(observation, found, rng, partial(_named, steps, count))
+            near = agreed_optimum(observation, found, rng, steps, f"{count}")
             if near is not None:
                 answer = steps(observation, near, f"{count}")
                 attempt = attempt_at(observation, found, answer, count)
@@ -178,16 +178,6 @@ def _attempt(
             return attempt_at(observation, found, steps(observation, found.mean, "last"), count)
         progress(Step(number, ROUND, count, one.misfit, one.spread))
         found, count, spread = one.distribution, count + 1, one.spread
-
-
-def _named(
-    steps: Callable[[Observation, FloatArray, str], Gaussian],
-    rounds: int,
-    of: Observation,
-    x: FloatArray,
-    start: int,
-) -> Gaussian:
-    return steps(of, x, f"{rounds}.{start}")
 
 
 def usual_settings(features: NetworkFeatures | None) -> InversionSettings:

@@ -27,7 +27,8 @@ def agreed_optimum(
     observation: Observation,
     found: Gaussian,
     rng: np.random.Generator,
-    steps: Callable[[Observation, FloatArray, int], Gaussian],
+    steps: Callable[[Observation, FloatArray, str], Gaussian],
+    name: str,
 ) -> FloatArray | None:
     """Return the best optimum, if two starts lead there and it fits; shape (unknown,).
 
@@ -38,13 +39,15 @@ def agreed_optimum(
         Its mean is the first start; the others are drawn from it.
     rng : Generator
     steps : callable
-        `gauss_newton` of an observation, from a start, of this number.
+        `gauss_newton` of an observation, from a start, by a name.
+    name : str
+        Their names begin so.
     """
     some = observation.on_some_lines(SHARE, rng) if is_surely_right(observation) else observation
     ends: list[Attempt] = []
     for start in range(STARTS):
         x = found.mean if start == 0 else found.draw(rng, 2)[0]
-        ends.append(attempt_at(some, found, steps(some, x, start), 0))
+        ends.append(attempt_at(some, found, steps(some, x, f"{name}.{start}"), 0))
         chosen = best(ends)
         if not chosen.fits:
             return None
