@@ -35,6 +35,11 @@ from disorder_landscape.studies.fresh_wires import SEED, Noise
 from disorder_landscape.studies.rows import Row, rounded
 from disorder_landscape.studies.study import Derived, Part, Place, Plan
 
+NUMBERS = (
+    *("noise", "site_error", "spread", "shape_error", "shape_spread", "mahalanobis"),
+    *("effective_sample_size", "excess", "seconds"),
+)
+"""Columns of the table."""
 PRIORS = REPOSITORY / "configs" / "priors"
 
 
@@ -103,6 +108,7 @@ class DevicesPlan(Plan):
     def derived(self, rows: Sequence[Row], place: Place) -> Derived:
         """Return coverage and errors, and how much of each parameter's uncertainty is left."""
         table = pd.DataFrame(rows)
+        table = table.assign(**{name: pd.to_numeric(table[name]) for name in NUMBERS})
         numbers = {}
         for (name, noise), some in table.groupby(["name", "noise"]):
             (group,) = (group for group in self.devices if group.name == name)
