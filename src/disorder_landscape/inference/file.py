@@ -19,11 +19,7 @@ from disorder_landscape.inference.invert import Progress, silent
 from disorder_landscape.inference.plot import plot_inference
 from disorder_landscape.inference.problem.measurement import measurement_of
 from disorder_landscape.inference.problem.prior import Prior
-from disorder_landscape.learning.model import (
-    CONFIG,
-    NETWORK,
-    SCALER,
-)
+from disorder_landscape.learning.model import CONFIG, NETWORK, SCALER
 from disorder_landscape.locks import kept_from_others
 
 ASKED = "asked"

@@ -26,8 +26,8 @@ def mean_wire(result: xr.Dataset) -> Nanowire:
     ArgumentError
         If this is no result of `infer`, or an older version's.
     """
-    values = {name: _number(result, f"{name}_mean") for name in _unknown(result)}
-    return _wire(result, _array(result, "potential_mean", ("site",)), values)
+    prior = prior_of_result(result)
+    return _wire(prior, _array(result, "potential_mean", ("site",)), _means(result, prior))
 
 
 def sample_wires(result: xr.Dataset) -> list[Nanowire]:
@@ -38,10 +38,10 @@ def sample_wires(result: xr.Dataset) -> list[Nanowire]:
     ArgumentError
         As `mean_wire`.
     """
-    potentials = _array(result, "potential", ("sample", "site"))
-    values = {name: _array(result, name, ("sample",)) for name in _unknown(result)}
+    prior, potentials = prior_of_result(result), _array(result, "potential", ("sample", "site"))
+    values = {name: _array(result, name, ("sample",)) for name in prior.unknown}
     return [
-        _wire(result, V, {name: float(of[k]) for name, of in values.items()})
+        _wire(prior, V, {name: float(of[k]) for name, of in values.items()})
         for k, V in enumerate(potentials)
     ]
 
@@ -51,13 +51,19 @@ def as_calibrated(result: xr.Dataset, measurement: Measurement) -> Measurement:
 
     Temperature and barriers are the measurement's own.
     """
-    setup = Setup(measurement.mu, measurement.bias)
-    values = {name: _number(result, f"{name}_mean") for name in _unknown(result)}
-    _enter(result, setup, values)
+    prior, setup = prior_of_result(result), Setup(measurement.mu, measurement.bias)
+    _enter(prior, setup, _means(result, prior))
     return replace(measurement, mu=setup.mu, bias=setup.bias, axis="mu")
 
 
-def _prior(result: xr.Dataset) -> Prior:
+def prior_of_result(result: xr.Dataset) -> Prior:
+    """Return the prior with which a result was found, all of its parameters said.
+
+    Raises
+    ------
+    ArgumentError
+        As `mean_wire`.
+    """
     but = "its attribute prior is missing, or another version's: run infer again"
     try:
         given = json.loads(result.attrs.get("prior", ""))
@@ -67,21 +73,21 @@ def _prior(result: xr.Dataset) -> Prior:
     return Prior.from_mapping(given)
 
 
-def _unknown(result: xr.Dataset) -> list[str]:
-    return list(_prior(result).unknown)
+def _means(result: xr.Dataset, prior: Prior) -> dict[str, float]:
+    return {name: float(_array(result, f"{name}_mean", ())) for name in prior.unknown}
 
 
-def _enter(result: xr.Dataset, setup: Setup, unknown: Mapping[str, float]) -> None:
+def _enter(prior: Prior, setup: Setup, unknown: Mapping[str, float]) -> None:
     """Let the parameters of a device enter a setup, known ones and these."""
-    values = {**_prior(result).known, **unknown}
+    values = {**prior.known, **unknown}
     for one in PARAMETERS:
         if one.name in values:
             one.enters(setup, number_in(one.name, values[one.name], one.low, one.high, one.unit))
 
 
-def _wire(result: xr.Dataset, V: FloatArray, unknown: Mapping[str, float]) -> Nanowire:
-    prior, setup = _prior(result), Setup(np.zeros(1), np.zeros(1))
-    _enter(result, setup, unknown)
+def _wire(prior: Prior, V: FloatArray, unknown: Mapping[str, float]) -> Nanowire:
+    setup = Setup(np.zeros(1), np.zeros(1))
+    _enter(prior, setup, unknown)
     return nanowire(V, setup, {name: getattr(prior, name) for name in FIXED})
 
 
@@ -90,7 +96,3 @@ def _array(result: xr.Dataset, name: str, dims: tuple[str, ...]) -> FloatArray:
     found = result[name].dims
     require(found == dims, "prediction", MUST, f"the dims of {name} are {found}")
     return np.asarray(result[name].to_numpy(), dtype=float)
-
-
-def _number(result: xr.Dataset, name: str) -> float:
-    return float(_array(result, name, ()))

@@ -18,11 +18,11 @@ from disorder_landscape.inference.attempt import Attempt, attempt_at, best
 from disorder_landscape.inference.checkpoint import Cache, Checkpoint, uncached
 from disorder_landscape.inference.posterior.importance_sampling import (
     importance_sampling,
-    tempered,
+    weighted_samples,
     widened,
 )
-from disorder_landscape.inference.problem.gaussian import Gaussian, log_density
-from disorder_landscape.inference.problem.observation import Observation, objective
+from disorder_landscape.inference.problem.gaussian import Gaussian
+from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.search.agreed_optimum import agreed_optimum
 from disorder_landscape.inference.search.first_guess import network_guess
 from disorder_landscape.inference.search.gauss_newton import gauss_newton
@@ -33,11 +33,7 @@ from disorder_landscape.inference.search.regression_rounds import (
     RoundSettings,
     regression_rounds,
 )
-from disorder_landscape.inference.verdict import (
-    NOT_CONVERGED,
-    is_surely_right,
-    verdict,
-)
+from disorder_landscape.inference.verdict import NOT_CONVERGED, is_surely_right, verdict
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.model.parameters import BOLTZMANN, FloatArray
 
@@ -129,7 +125,7 @@ def invert(
         start = guess if guess is not None and number == 0 else prior
         more = _with_more_samples(settings, number)
         rounds = regression_rounds(observation, start, [seed, number], more, cache, features)
-        attempts.append(_attempt(observation, start, rounds, [seed], number, cache, progress))
+        attempts.append(_attempt(observation, start, rounds, seed, number, cache, progress))
         outcome = attempts
         if number > 0 or settings.attempts == 1 or is_surely_right(observation):
             report = partial(_report, progress, number, IMPORTANCE_SAMPLING)
@@ -144,7 +140,7 @@ def _attempt(
     observation: Observation,
     start: Gaussian,
     rounds: Iterator[Round],
-    seed: Sequence[int],
+    seed: int,
     number: int,
     cache: Cache,
     progress: Progress,
@@ -166,7 +162,7 @@ def _attempt(
     while True:
         if spread < next_try:
             next_try = spread / 2
-            rng = np.random.default_rng([*seed, number, count, 2])
+            rng = np.random.default_rng([seed, number, count, 2])
             near = agreed_optimum(observation, found, rng, steps, f"{count}")
             if near is not None:
                 answer = steps(observation, near, f"{count}")
@@ -234,8 +230,7 @@ def _effective_share(
 ) -> dict[str, float]:
     """Return the effective `share` of an answer's samples if weighted by the exact posterior."""
     X = answer.draw(np.random.default_rng(seed), CHECKED)
-    height = objective(observation, X, observation.simulate(X))
-    found = tempered(X, -0.5 * height - log_density(answer, X), 0.0)
+    found = weighted_samples(observation, answer, X)
     return {"share": found.effective_sample_size / CHECKED}
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -9,13 +10,13 @@ import numpy as np
 import xarray as xr
 
 from disorder_landscape.files import write_picture
+from disorder_landscape.inference.inferred import prior_of_result
+from disorder_landscape.inference.problem.distributions import Distribution
 from disorder_landscape.inference.problem.measurement import Measurement
 from disorder_landscape.inference.report import (
-    beliefs,
     error_bar,
     parameter_with_std,
     prior_as_text,
-    unknown_parameters,
 )
 from disorder_landscape.inference.verdict import CONVERGED
 from disorder_landscape.model.parameters import FloatArray
@@ -51,16 +52,16 @@ def plot_inference(result: xr.Dataset, measurement: Measurement, path: Path) -> 
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
-    names = unknown_parameters(result)
+    unknown = prior_of_result(result).unknown
     with_components = "component" in result.dims
     rows = {
         "V": (["V"] * 4, 1.0),
         "std": (["std"] * 4, 0.6),
         "c": ((["c"] * 2 if with_components else ["misfit"] * 2) + ["misfit"] * 2, 0.9),
-        "parameters": (["parameters"] * 4, 0.3 + 0.12 * len(names)),
+        "parameters": (["parameters"] * 4, 0.3 + 0.12 * len(unknown)),
         "maps": (["measured", "explained", "T", "P"], 1.3),
     }
-    if not names:
+    if not unknown:
         del rows["parameters"]
     heights = [height for _, height in rows.values()]
     width, least_height = FIGURE_SIZE
@@ -74,8 +75,8 @@ def plot_inference(result: xr.Dataset, measurement: Measurement, path: Path) -> 
         _potential_std(panels["std"], result)
         if with_components:
             _components(panels["c"], result)
-        if names:
-            _parameters(panels["parameters"], result)
+        if unknown:
+            _parameters(panels["parameters"], result, unknown)
         _misfit(panels["misfit"], result)
         _conductances(figure, panels["measured"], panels["explained"], result, measurement)
         _maps(figure, panels["T"], panels["P"], result)
@@ -117,10 +118,9 @@ def _components(panel: Any, result: xr.Dataset) -> None:
     panel.xaxis.get_major_locator().set_params(integer=True)
 
 
-def _parameters(panel: Any, result: xr.Dataset) -> None:
+def _parameters(panel: Any, result: xr.Dataset, unknown: Mapping[str, Distribution]) -> None:
     """Show each parameter on the range that the prior gives it, and its value beside it."""
-    known = beliefs(result)
-    for row, (name, belief) in enumerate(known.items()):
+    for row, (name, belief) in enumerate(unknown.items()):
         low, high = belief.range
         mean, std = ((result[name + end].item() - low) / (high - low) for end in ("_mean", "_std"))
         std += low / (high - low)
@@ -128,7 +128,7 @@ def _parameters(panel: Any, result: xr.Dataset) -> None:
         panel.errorbar(mean, row, xerr=std, fmt="k.", capsize=2, lw=0.8)
         panel.text(1.02, row, parameter_with_std(result, name), va="center")
         panel.text(-0.02, row, f"{name}, before: {prior_as_text(belief)}", va="center", ha="right")
-    panel.set(xlim=(-0.75, 1.65), ylim=(len(known) - 0.4, -0.6))
+    panel.set(xlim=(-0.75, 1.65), ylim=(len(unknown) - 0.4, -0.6))
     panel.axis("off")
     panel.set_title("parameters, each on the range that it may have (grey)")
 

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import json
-
 import numpy as np
 import xarray as xr
 
 from disorder_landscape.arguments import numbers_of
 from disorder_landscape.config import TrainingConfig
+from disorder_landscape.inference.inferred import prior_of_result
 from disorder_landscape.inference.problem.distributions import Distribution, Uniform
 from disorder_landscape.inference.problem.observation import noise_of_channels, one_or_each
-from disorder_landscape.inference.problem.parameters import BY_NAME
-from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.verdict import CONVERGED
 from disorder_landscape.model.parameters import NOISE_FLOOR, FloatArray
 from disorder_landscape.model.quantities import CONDUCTANCES
@@ -82,16 +79,6 @@ def parameter_with_std(result: xr.Dataset, name: str) -> str:
     return f"{mean:.{digits}f} ± {std:.{digits}f}" + ("" if unit == "1" else f" {unit}")
 
 
-def unknown_parameters(result: xr.Dataset) -> list[str]:
-    """Return the names of the parameters that were unknown, in the order of the registry."""
-    return [name for name in BY_NAME if name in result.variables]
-
-
-def beliefs(result: xr.Dataset) -> dict[str, Distribution]:
-    """Return what was known of these before the measurement."""
-    return Prior.from_mapping(json.loads(result.attrs["prior"])).unknown
-
-
 def prior_as_text(belief: Distribution) -> str:
     """Return what was known of a parameter as text."""
     if isinstance(belief, Uniform):
@@ -113,7 +100,7 @@ def summary(result: xr.Dataset) -> list[str]:
         f"attempts        {attrs['attempts']}, rounds: {attrs['rounds']}",
         f"error bar of V  {error_bar(result):.3g} µeV, root mean square over the sites",
     ]
-    for name, belief in beliefs(result).items():
+    for name, belief in prior_of_result(result).unknown.items():
         known = prior_as_text(belief)
         lines.append(f"{name:14}  {parameter_with_std(result, name)}; before: {known}")
     if result.attrs["not_fixed"]:

@@ -9,11 +9,9 @@ import numpy as np
 import xarray as xr
 
 from disorder_landscape.inference.attempt import Attempt
-from disorder_landscape.inference.posterior.importance_sampling import tempered
+from disorder_landscape.inference.posterior.importance_sampling import weighted_samples
 from disorder_landscape.inference.problem.distributions import Distribution
-from disorder_landscape.inference.problem.gaussian import log_density
-from disorder_landscape.inference.problem.measurement import Measurement
-from disorder_landscape.inference.problem.observation import Observation, objective
+from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.problem.parameters import BY_NAME
 from disorder_landscape.inference.problem.unknowns import Device, Unknowns, share_settings
 from disorder_landscape.model.parameters import FloatArray
@@ -113,8 +111,7 @@ def evidence(observation: Observation, chosen: Attempt, X: FloatArray) -> dict[s
     """
     found = chosen.importance_samples
     if found is None:
-        height = objective(observation, X, observation.simulate(X))
-        found = tempered(X, -0.5 * height - log_density(chosen.answer, X), 0.0)
+        found = weighted_samples(observation, chosen.answer, X)
     of_the_errors = -0.5 * np.log(2 * np.pi * observation.variance).sum()
     return {
         "log_evidence": found.log_mean_weight + of_the_errors,
@@ -170,7 +167,7 @@ def _gap_energies(observation: Observation) -> FloatArray:
 
 def _gap_probability(observation: Observation, X: FloatArray, gaps: FloatArray) -> FloatArray:
     """Return the share of samples whose lowest excitation is above each energy (gap, mu, B)."""
-    m: Measurement = observation.measurement
+    m = observation.measurement
     above = np.zeros((gaps.size, m.mu.size, m.B.size))
     visibility = _visibility(observation, X, (m.mu, m.B))[:, 0]
     for device, T_IV in zip(_devices(observation, X, m.mu), visibility, strict=True):

@@ -124,7 +124,7 @@ class Nanowire:
         """
         if np.isinf(self.critical_field):
             return self
-        left = self.delta0 * np.sqrt(max(0.0, 1 - (B / self.critical_field) ** 2))
+        left = gap_in_field(self.delta0, self.critical_field, B)
         least = PARAMETER_RANGES["delta0"][0]
         must = f"stay below the critical field of {self.critical_field:g} T, where the gap closes"
         but = f"at {B:g} T it is less than {least:g} meV"
@@ -185,6 +185,11 @@ class Nanowire:
         V[0] += self.barrier[0]
         V[-1] += self.barrier[1]
         return V
+
+
+def gap_in_field(delta0: float, critical_field: float, B: float) -> float:
+    """Return Δ₀√(1 − (B/B_c)²) in meV, the gap of the parent in a field; zero beyond B_c."""
+    return delta0 * float(np.sqrt(max(0.0, 1 - (B / critical_field) ** 2)))
 
 
 PARAMETER_RANGES = {

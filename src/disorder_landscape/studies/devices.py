@@ -7,7 +7,6 @@ answers are functions of (name, noise, index) alone.
 
 from __future__ import annotations
 
-import time
 import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -20,18 +19,15 @@ from pydantic import Field
 
 from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.config import Positive
-from disorder_landscape.inference.attempt import best
-from disorder_landscape.inference.invert import invert
 from disorder_landscape.inference.problem.measurement import Measurement
 from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
 from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.problem.unknowns import Device, Unknowns
-from disorder_landscape.inference.verdict import verdict
 from disorder_landscape.model.disorder import mean_reduction, smooth_noise
 from disorder_landscape.model.parameters import B_MAX, BIAS, TEMPERATURE, FloatArray, Nanowire
 from disorder_landscape.solver.quadrature import thermal_quadrature
 from disorder_landscape.studies.calibration import coverage, joint_coverage
-from disorder_landscape.studies.fresh_wires import SEED, Noise
+from disorder_landscape.studies.fresh_wires import SEED, Noise, inverted
 from disorder_landscape.studies.rows import Row, rounded
 from disorder_landscape.studies.study import Derived, Part, Place, Plan
 
@@ -154,41 +150,31 @@ def device_row(task: Task, group: Devices) -> dict[str, object]:
     dict
         `site_error` of V in meV, root mean square over the sites, and its error bar `spread`; the
         same of V less its mean, `shape_error` and `shape_spread`; `mahalanobis`, the squared
-        distance of the truth in standard deviations; verdict and cost; and, as text, for each
-        unknown `z_scores`, the truth's distance in standard deviations, and `widths`, the standard
-        deviation as a share of the prior's.
+        distance of the truth in standard deviations; the outcome of `Inverted`; and, as text, for
+        each unknown `z_scores`, the truth's distance in standard deviations, and `widths`, the
+        standard deviation as a share of the prior's.
     """
     device, truth = drawn_device(group, task)
     observation = measured_device(device, group, task)
-    begun = time.perf_counter()
-    attempts = invert(observation, None, task.index)
-    seconds = time.perf_counter() - begun
-    chosen, unknowns = best(attempts), group.unknowns
-    mean, covariance = chosen.answer.mean, chosen.answer.covariance
+    found, unknowns = inverted(observation, None, task.index), group.unknowns
+    mean, covariance = found.answer.mean, found.answer.covariance
     off = unknowns.potential(mean) - device.wire.potential
     n, L = unknowns.of_disorder, unknowns.to_potential
     L = L - L.mean(axis=0)
     shape_variance = np.einsum("si,ij,sj->s", L, covariance[:n, :n], L).mean()
     std = np.sqrt(np.diag(covariance))
-    samples = chosen.importance_samples
     row: dict[str, object] = {
         "name": task.name,
         "noise": task.noise,
         "index": task.index,
         "site_error": np.sqrt((off**2).mean()),
-        "spread": unknowns.site_std(covariance),
+        "spread": found.outcome["spread"],
         "shape_error": off.std(),
         "shape_spread": np.sqrt(shape_variance),
-        "mahalanobis": chosen.answer.squared_distance(truth),
-        "effective_sample_size": np.nan if samples is None else samples.effective_sample_size,
-        "excess": chosen.excess,
-        "verdict": verdict(observation, attempts),
-        "attempts": len(attempts),
-        "rounds": sum(attempt.rounds for attempt in attempts),
-        "seconds": seconds,
+        "mahalanobis": found.answer.squared_distance(truth),
     }
     return {
-        **rounded(row),
+        **rounded(row | found.outcome),
         "z_scores": " ".join(f"{z:.3f}" for z in (truth - mean) / std),
         "widths": " ".join(f"{width:.3g}" for width in std),
     }

@@ -22,7 +22,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from disorder_landscape.inference.checkpoint import Cache, uncached
-from disorder_landscape.inference.problem.gaussian import Gaussian, log_mixture
+from disorder_landscape.inference.problem.gaussian import Gaussian, log_density, log_mixture
 from disorder_landscape.inference.problem.observation import Observation, objective, overall_misfit
 from disorder_landscape.model.parameters import FloatArray
 
@@ -144,6 +144,14 @@ def _simulated(observation: Observation, X: FloatArray) -> dict[str, Any]:
         "height": height.tolist(),
         "misfit": overall_misfit(observation, Y[int(height.argmin())]),
     }
+
+
+def weighted_samples(
+    observation: Observation, answer: Gaussian, X: FloatArray
+) -> ImportanceSamples:
+    """Return samples X (sample, unknown) of an answer, weighted with the exact posterior."""
+    height = objective(observation, X, observation.simulate(X))
+    return tempered(X, -0.5 * height - log_density(answer, X), 0.0)
 
 
 def tempered(X: FloatArray, log_weight: FloatArray, least: float) -> ImportanceSamples:

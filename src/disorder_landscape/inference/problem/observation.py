@@ -127,8 +127,9 @@ class Observation:
     def _as_set_up(self, device: Device) -> Measurement:
         """Return the measurement at the settings that it has in truth."""
         setup = device.setup
-        at = replace(self.measurement, mu=setup.mu, bias=setup.bias)
-        return replace(at, temperature=setup.temperature)
+        return replace(
+            self.measurement, mu=setup.mu, bias=setup.bias, temperature=setup.temperature
+        )
 
     def misfit(self, y: FloatArray) -> FloatArray:
         """Return root-mean-square misfits in e²/h, shape (channel,); NaN without data."""

@@ -33,7 +33,13 @@ from disorder_landscape.model.disorder import (
     NOISE_STD,
     noise_std_of,
 )
-from disorder_landscape.model.parameters import MOST_SITES, PARAMETER_RANGES, SITES, Nanowire
+from disorder_landscape.model.parameters import (
+    MOST_SITES,
+    PARAMETER_RANGES,
+    SITES,
+    Nanowire,
+    gap_in_field,
+)
 
 Given = float | tuple[float, float] | Distribution | None
 ALL = "all"
@@ -178,9 +184,8 @@ class Prior:
 
     def _check_biases(self, measurement: Measurement) -> None:
         """Require that all biases lie below the gap, whatever the unknowns are."""
-        least = self.extremes("delta0")[0]
-        share = abs(measurement.B).max() / self.extremes("critical_field")[0]
-        least *= np.sqrt(max(0.0, 1 - share**2))
+        gap, critical_field = (self.extremes(name)[0] for name in ("delta0", "critical_field"))
+        least = gap_in_field(gap, critical_field, float(abs(measurement.B).max()))
         largest = abs(measurement.bias).max() + max(map(abs, self.extremes("bias_offset")))
         must = "leave all biases below the gap of the parent superconductor"
         but = f"a bias may be {largest:.4g} meV, and the gap {least:.4g}"
@@ -198,9 +203,9 @@ class Prior:
         Temperature and barriers are left to the measurement.
         """
         low, high = config.alpha_range
-        known = {one.name: one.usual for one in PARAMETERS if one.name in PARAMETER_RANGES}
-        left = ("temperature", "barrier_left", "barrier_right")
-        given: dict[str, Any] = {name: x for name, x in known.items() if name not in left}
+        given: dict[str, Any] = {
+            one.name: one.usual for one in PARAMETERS if one.name in PARAMETER_RANGES
+        }
         given["alpha"] = (low, high) if low < high else low
         return cls(
             components=config.components,

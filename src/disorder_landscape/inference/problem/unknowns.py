@@ -130,10 +130,6 @@ class Unknowns:
             found.append(Device(nanowire(V, setup, fixed), setup))
         return found
 
-    def wires(self, X: FloatArray, measurement: Measurement) -> list[Nanowire]:
-        """Return the wires of samples X (sample, unknown)."""
-        return [device.wire for device in self.devices(X, measurement)]
-
     def slopes(
         self, x: FloatArray, measurement: Measurement, by: Mapping[str, FloatArray]
     ) -> FloatArray:
