@@ -16,8 +16,9 @@ import disorder_landscape.inference.infer
 from disorder_landscape import Nanowire, conductance, conductance_gradient, topological_visibility
 from disorder_landscape.config import Config, DatasetConfig
 from disorder_landscape.dataset.realizations import realization
-from disorder_landscape.inference.attempt import attempt_at
 from disorder_landscape.inference.invert import InversionSettings
+from disorder_landscape.inference.optimum import optimum_at
+from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.learning.scaling import LabelScaler
 from disorder_landscape.model.parameters import BARRIER_RANGE, PARAMETER_RANGES
@@ -344,17 +345,17 @@ def test_predict_answers_or_refuses(count):
     tried(count, arguments, check)
 
 
-def one_attempt(observation, *others):
+def one_optimum(observation, *others):
     """Instead of an inversion: the prior's mean, with its covariance made smaller."""
     prior = observation.unknowns.prior
     answer = replace(prior, covariance=1e-4 * prior.covariance)
-    return [attempt_at(observation, prior, answer, 1)]
+    return Outcome([optimum_at(observation, answer)])
 
 
 @pytest.fixture
 def short(monkeypatch):
     """Let no inversion be carried out."""
-    monkeypatch.setattr(disorder_landscape.inference.infer, "invert", one_attempt)
+    monkeypatch.setattr(disorder_landscape.inference.infer, "invert", one_optimum)
 
 
 PRIOR = dl.Prior(2, 10, g=(20, 30), bias_offset=dl.Normal(0, 1e-3), dissipation=(0, 1e-3))

@@ -5,12 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from disorder_landscape.inference.attempt import Attempt
 from disorder_landscape.inference.checkpoint import Checkpoint
-from disorder_landscape.inference.invert import with_importance_samples
+from disorder_landscape.inference.invert import posterior_samples
+from disorder_landscape.inference.optimum import Optimum, optimum_at
+from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.posterior.importance_sampling import (
     ENOUGH,
     ImportanceSamples,
+    Part,
+    fitted,
     importance_sampling,
     tempered,
     widened,
@@ -18,7 +21,8 @@ from disorder_landscape.inference.posterior.importance_sampling import (
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.unknowns import unknowns_of
 from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED, verdict
-from linear_data import CONFIG, DATA, SIZE, UNKNOWNS, Linear, posterior
+from disorder_landscape.model.parameters import BOLTZMANN
+from linear_data import CONFIG, DATA, SIZE, UNKNOWNS, Linear, Measured, posterior
 
 PRIOR = UNKNOWNS.prior
 WIDTH = np.sqrt(np.diag(PRIOR.covariance))
@@ -44,7 +48,9 @@ def test_samples_have_the_posteriors_moments(lines):
     scale = np.sqrt(np.diag(exact.covariance))
     far = Gaussian(exact.mean + 3 * scale, 9 * exact.covariance)
     steps = []
-    found = importance_sampling(lines, [far], [0], progress=lambda *step: steps.append(step))
+    found = importance_sampling(
+        lines, [Part(far, 1.0)], [0], progress=lambda *step: steps.append(step)
+    )
     assert [number for number, _, _ in steps] == list(range(len(steps)))
     assert found.effective_sample_size >= ENOUGH
     assert found.samples.shape == (128 * len(steps), SIZE)
@@ -64,7 +70,7 @@ def test_importance_samples_are_not_too_narrow():
     too_wide = Gaussian(exact.mean, 1.4**2 * exact.covariance)
     ratio = []
     for seed in range(40):
-        found = importance_sampling(many, [too_wide, widened(exact)], [seed])
+        found = importance_sampling(many, [Part(too_wide, 0.5), Part(widened(exact), 0.5)], [seed])
         n, off = found.effective_sample_size, found.moments.mean - exact.mean
         second_moment = exact.covariance + np.outer(off, off)
         square = np.trace(np.linalg.solve(found.moments.covariance, second_moment))
@@ -75,7 +81,9 @@ def test_importance_samples_are_not_too_narrow():
 def test_both_valleys_have_their_share():
     truth = PRIOR.mean + 1.5 * WIDTH
     folds = Folds(((truth - PRIOR.mean) @ SLOPE) ** 2, SLOPE, variance=4 * ONE)
-    about = [Gaussian(at, 0.05 * PRIOR.covariance) for at in (truth, 2 * PRIOR.mean - truth)]
+    about = [
+        Part(Gaussian(at, 0.05 * PRIOR.covariance), 0.5) for at in (truth, 2 * PRIOR.mean - truth)
+    ]
     found = importance_sampling(folds, about, [0])
     side = (found.samples - PRIOR.mean) @ (truth - PRIOR.mean) > 0
     assert 0.35 < found.weight[side].sum() < 0.65
@@ -115,7 +123,7 @@ def test_samples_are_drawn_as_often_as_they_weigh():
 def test_interrupted_importance_sampling_goes_on(lines, tmp_path):
     start = Gaussian(PRIOR.mean, PRIOR.covariance)
     path = tmp_path / "unfinished.json"
-    first = importance_sampling(lines, [start], [0], Checkpoint(path).cached)
+    first = importance_sampling(lines, [Part(start, 1.0)], [0], Checkpoint(path).cached)
     again = Checkpoint(path)
     assert len(again) > 0
 
@@ -124,29 +132,57 @@ def test_interrupted_importance_sampling_goes_on(lines, tmp_path):
 
     unavailable = replace(lines)
     unavailable.simulate = fail
-    second = importance_sampling(unavailable, [start], [0], again.cached)
+    second = importance_sampling(unavailable, [Part(start, 1.0)], [0], again.cached)
     np.testing.assert_array_equal(first.weight, second.weight)
     np.testing.assert_array_equal(first.samples, second.samples)
 
 
-@pytest.mark.parametrize(("width", "wide"), [(1e-3, False), (1.2e-3, True), (0.02, True)])
-def test_answers_wider_than_conductances_are_linear_get_importance_samples(lines, width, wide):
-    """At 50 mK a quarter of kT is 1.1 µeV."""
+def test_mixtures_are_fitted_to_samples():
+    """Of two normal distributions that are far apart; one that no sample is near stays."""
+    rng, unit = np.random.default_rng(3), np.eye(2)
+    X = np.concatenate([rng.normal(size=(3000, 2)), [8.0, 0.0] + 0.5 * rng.normal(size=(1000, 2))])
+    samples = ImportanceSamples(X, np.full(4000, 1 / 4000))
+    centers = [(1.0, 0.0), (7.0, 1.0), (0.0, 90.0)]
+    first, second, far = fitted(
+        [Part(Gaussian(np.array(at), unit), 1 / 3) for at in centers], samples
+    )
+    assert first.share == pytest.approx(0.75, abs=0.01)
+    assert second.share == pytest.approx(0.25, abs=0.01)
+    assert abs(first.proposal.mean).max() < 0.1
+    assert abs(second.proposal.mean - [8.0, 0.0]).max() < 0.1
+    np.testing.assert_allclose(first.proposal.covariance, 1.44 * unit, atol=0.15)
+    np.testing.assert_allclose(second.proposal.covariance, 0.36 * unit, atol=0.05)
+    assert far.share < 1e-9
+    np.testing.assert_array_equal(far.proposal.covariance, unit)
+
+
+@pytest.mark.parametrize(("kT", "wide"), [(4.2, False), (3.8, True), (0.5, True)])
+def test_answers_wider_than_conductances_are_linear_get_importance_samples(lines, kT, wide):
+    """Which is a quarter of kT, here in units of the bar of an answer that is too narrow."""
     exact = posterior(lines)
-    narrow = exact.covariance * (width / UNKNOWNS.site_std(exact.covariance)) ** 2
-    answer = Gaussian(exact.mean, narrow)
-    one = Attempt(exact, answer, lines.simulate(answer.mean[None])[0], 0.0, 0.0, 1)
-    attempts = with_importance_samples(lines, [one, replace(one, objective=1.0)], [0])
-    assert verdict(lines, attempts) == CONVERGED
-    assert (attempts[0].importance_samples is not None) == wide
-    bar = UNKNOWNS.site_std(attempts[0].answer.covariance)
-    expected = UNKNOWNS.site_std(exact.covariance) if wide else width
-    assert bar == pytest.approx(expected, rel=0.2)
-    assert attempts[1].importance_samples is None
+    answer = Gaussian(exact.mean, 0.5 * exact.covariance)
+    bar = UNKNOWNS.site_std(answer.covariance)
+    lines = replace(lines, measurement=Measured(temperature=kT * bar / BOLTZMANN))
+    one = Optimum(answer, lines.simulate(answer.mean[None])[0], 0.0, 0.0, (0, 0))
+    optima = [one, replace(one, objective=20.0)]
+    found = Outcome(optima, posterior_samples(lines, optima, [0]))
+    assert verdict(lines, found) == CONVERGED
+    assert (found.importance_samples is not None) == wide
+    expected = UNKNOWNS.site_std(exact.covariance) if wide else bar
+    assert UNKNOWNS.site_std(found.answer.covariance) == pytest.approx(expected, rel=0.15)
     if wide:
-        tempered_only = replace(attempts[0].importance_samples, power=0.5)
-        doubtful = [replace(attempts[0], importance_samples=tempered_only), attempts[1]]
-        assert verdict(lines, doubtful) == NOT_CONVERGED
-        np.testing.assert_array_equal(attempts[0].data, one.data)  # of the most probable wire
-    poor = Attempt(exact, answer, one.data, 0.0, 9.0, 1)
-    assert with_importance_samples(lines, [poor], [0]) == [poor]  # what does not fit stays as it is
+        tempered_only = replace(found.importance_samples, power=0.5)
+        assert verdict(lines, Outcome(optima, tempered_only)) == NOT_CONVERGED
+    poor = replace(one, excess=9.0)
+    assert posterior_samples(lines, [poor], [0]) is None  # what does not fit stays as it is
+
+
+def test_several_optima_get_importance_samples(lines):
+    """However narrow they are."""
+    exact = posterior(lines)
+    one = optimum_at(lines, exact)
+    apart = Gaussian(exact.mean + 2 * np.sqrt(np.diag(exact.covariance)), exact.covariance)
+    other = replace(one, answer=apart)
+    found = posterior_samples(lines, [one, other], [0])
+    assert found.is_enough
+    assert exact.squared_distance(found.moments.mean) < 0.3

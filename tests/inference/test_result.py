@@ -7,8 +7,9 @@ from scipy.stats import multivariate_normal
 
 import disorder_landscape as dl
 from disorder_landscape import ArgumentError
-from disorder_landscape.inference.attempt import Attempt
 from disorder_landscape.inference.inferred import mean_wire, sample_wires
+from disorder_landscape.inference.optimum import Optimum
+from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.problem.distributions import Normal, Uniform
 from disorder_landscape.inference.report import summary
 from disorder_landscape.inference.result import evidence, left_open, moments
@@ -26,9 +27,9 @@ def test_the_evidence_is_that_of_linear_data(linear):
     expected = multivariate_normal(np.zeros(DATA), covariance).logpdf(linear.data)
     for wider in (1.0, 1.1):
         answer = type(exact)(exact.mean, wider**2 * exact.covariance)
-        attempt = Attempt(answer, answer, linear.data, 0.0, 0.0, 1)
+        outcome = Outcome([Optimum(answer, linear.data, 0.0, 0.0)])
         X = answer.draw(np.random.default_rng(0), 4000)
-        found = evidence(linear, attempt, X)
+        found = evidence(linear, outcome, X)
         assert found["log_evidence"] == pytest.approx(expected, abs=1e-6 if wider == 1 else 0.05)
         assert found["effective_sample_size"] == pytest.approx(
             4000, rel=1e-6 if wider == 1 else 0.1

@@ -5,16 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from disorder_landscape.inference.attempt import Attempt, chi_square_excess
+from disorder_landscape.inference.optimum import Optimum, chi_square_excess, same_answer
+from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.verdict import (
     CONVERGED,
     NOT_CONVERGED,
     NOT_DESCRIBED,
-    same_answer,
     verdict,
 )
-from linear_data import SIZE, UNKNOWNS, Linear
+from linear_data import SIZE, Linear
 
 
 def test_excess_looks_at_each_channel():
@@ -38,38 +38,43 @@ def test_excess_looks_at_each_channel():
     ],
 )
 def test_answers_that_are_equally_bad_say_that_the_model_is(linear, misfits, expected):
-    """… and one that fits does not, but data as noisy as these need a second that agrees."""
+    """… and one that fits does not, but data as noisy as these need a start that agrees."""
     noisy = replace(linear, variance=np.full(40, 1.0))
-    attempts = [
-        Attempt(
-            last_proposal=UNKNOWNS.prior,
+    optima = [
+        Optimum(
             answer=Gaussian(far * np.ones(SIZE), 1e-6 * np.eye(SIZE)),
             data=noisy.data + misfit,
             objective=40 * misfit**2,
             excess=(misfit**2 - 1) * np.sqrt(20),
-            rounds=5,
+            found_by=(far,),
         )
         for far, misfit in enumerate(misfits)
     ]
-    assert verdict(noisy, attempts) == expected
+    assert verdict(noisy, Outcome(optima)) == expected
+    same_attempt = [replace(one, found_by=(0,)) for one in optima]
+    assert verdict(noisy, Outcome(same_attempt)) == NOT_CONVERGED
 
 
 @pytest.mark.parametrize(("noise", "expected"), [(0.3, NOT_CONVERGED), (1e-3, CONVERGED)])
 def test_one_answer_that_fits_is_enough_where_the_noise_hides_little(linear, noise, expected):
     measured = replace(linear, variance=np.full(40, noise**2))
     answer = Gaussian(np.zeros(SIZE), np.eye(SIZE))
-    alone = Attempt(answer, answer, measured.data, objective=0.0, excess=0.0, rounds=5)
-    assert verdict(measured, [alone]) == expected
+    alone = Optimum(answer, measured.data, objective=0.0, excess=0.0)
+    assert verdict(measured, Outcome([alone])) == expected
     few = Linear(measured.data[:20], linear.slope[:, :20], variance=measured.variance[:20])
-    assert verdict(few, [alone]) == NOT_CONVERGED  # a wrong answer may fit four for each unknown
-    assert verdict(measured, [alone, replace(alone, objective=1.0)]) == CONVERGED
+    few_fit = Outcome([alone])
+    assert verdict(few, few_fit) == NOT_CONVERGED  # a wrong answer may fit four for each unknown
+    again = replace(alone, found_by=(0, 0))
+    assert verdict(measured, Outcome([again])) == CONVERGED
+    as_likely = Outcome([again, replace(alone, objective=1.0)])  # … which one start has found
+    assert verdict(measured, as_likely) == expected
 
 
 def test_answers_are_the_same_that_error_bars_allow():
     """However small the distance is, along the axis that is known best it may be far."""
     covariance = np.diag([1.0, 1e-6, *np.ones(SIZE - 2)])
     about = Gaussian(np.zeros(SIZE), covariance)
-    one = Attempt(about, about, np.zeros(40), 0.0, 0.0, 5)
+    one = Optimum(about, np.zeros(40), 0.0, 0.0)
     observation = Linear(np.zeros(40), np.empty(0))
     for axis, far, same in [(0, 2.0, True), (1, 1e-3, True), (1, 0.1, False), (0, 6.0, False)]:
         other = replace(one, answer=Gaussian(far * np.eye(SIZE)[axis], covariance))

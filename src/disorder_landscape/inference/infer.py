@@ -17,7 +17,6 @@ from disorder_landscape.arguments import (
     whole_number_in,
 )
 from disorder_landscape.config import DatasetConfig
-from disorder_landscape.inference.attempt import best
 from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.invert import (
     InversionSettings,
@@ -127,20 +126,16 @@ def infer(
     require(samples % 2 == 0, "samples", "be an even number", f"it is {samples}")
     seed = whole_number_in("seed", seed, 0, 2**31)
     trained, start = _network(observation, prior, network)
-    features = usable_network_features(trained, observation)
-    if features is not None:
-        start = "the prior, with the network's output as further features"
-    settings = settings or usual_settings(features)
+    settings = settings or usual_settings(usable_network_features(trained, observation))
     fingerprint = _fingerprint(observation, trained, repr((seed, settings, start)))
     found_before = Checkpoint(checkpoint, fingerprint)
-    attempts = invert(observation, trained, seed, settings, progress, found_before)
-    chosen = best(attempts)
-    result = result_of(observation, chosen, samples, seed)
+    found = invert(observation, trained, seed, settings, progress, found_before)
+    result = result_of(observation, found, samples, seed)
     result.attrs |= {
-        "verdict": verdict(observation, attempts),
-        "excess": chosen.excess,
-        "attempts": len(attempts),
-        "rounds": sum(attempt.rounds for attempt in attempts),
+        "verdict": verdict(observation, found),
+        "excess": found.best.excess,
+        "attempts": found.attempts,
+        "rounds": found.rounds,
         "start": start,
         "noise": observation.noise,
         "theta": observation.measurement.theta,

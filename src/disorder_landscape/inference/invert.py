@@ -9,37 +9,41 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
 
-from disorder_landscape.inference.attempt import Attempt, attempt_at, best
 from disorder_landscape.inference.checkpoint import Cache, Checkpoint, uncached
+from disorder_landscape.inference.optimum import Optimum, best, shares
+from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.posterior.importance_sampling import (
+    ImportanceSamples,
+    Part,
     importance_sampling,
     weighted_samples,
     widened,
 )
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.observation import Observation
-from disorder_landscape.inference.search.agreed_optimum import agreed_optimum
 from disorder_landscape.inference.search.first_guess import network_guess
-from disorder_landscape.inference.search.gauss_newton import gauss_newton
+from disorder_landscape.inference.search.gauss_newton import ENOUGH, ROUGHLY, gauss_newton
 from disorder_landscape.inference.search.network_features import NetworkFeatures, network_features
+from disorder_landscape.inference.search.optima import SHARE, Optima
 from disorder_landscape.inference.search.regression_rounds import (
     WITH_NETWORK_FEATURES,
     Round,
     RoundSettings,
     regression_rounds,
 )
-from disorder_landscape.inference.verdict import NOT_CONVERGED, is_surely_right, verdict
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.model.parameters import BOLTZMANN, FloatArray
 
-TRIED_FROM = 0.1
-"""Gauss–Newton steps are tried if the distribution of V is narrower than this in meV: they find the
-truth from guesses of networks that are some 5 and 30 µeV off."""
+TRIED_FROM = 0.15
+"""Gauss–Newton steps are tried if the distribution of V is narrower than this in meV, and again
+whenever it is half as wide. …"""
+STARTS = 2, 4
+"""… They start at its mean and at draws: so many if none ends at an optimum that fits, or if one
+does."""
 STRAIGHT = 0.25
 """Whether the posterior is a normal distribution is asked if the error bar of V is more than this
 many kT, or …"""
@@ -52,6 +56,8 @@ CHECKED = 64
 NORMAL = 0.8
 """… It is the posterior if their effective sample size is this share of them. (Of a normal
 posterior that is wider by 10 % in seven directions it is 0.86, by 20 % 0.47.)"""
+NEGLIGIBLE = 1e-3
+"""Optima with less than this share of the posterior are left out."""
 ROUND, GAUSS_NEWTON, IMPORTANCE_SAMPLING = "round", "Gauss–Newton", "importance sampling"
 """The stages of an attempt."""
 
@@ -97,8 +103,8 @@ def invert(
     settings: InversionSettings | None = None,
     progress: Progress = silent,
     checkpoint: Checkpoint | None = None,
-) -> list[Attempt]:
-    """Return the attempts at explaining the data, the `best` of which is the answer.
+) -> Outcome:
+    """Return the optima of the posterior that explain the data best, and samples of it.
 
     Parameters
     ----------
@@ -115,65 +121,79 @@ def invert(
     cache = (checkpoint if checkpoint is not None else Checkpoint()).cached
     features = usable_network_features(model, observation)
     settings = settings or usual_settings(features)
-    attempts: list[Attempt] = []
     prior, guess = observation.unknowns.prior, None
-    if model is not None and features is None:
+    if model is not None:
         rng = np.random.default_rng([seed, 2**31])
-        make = partial(network_guess, model, observation, rng)
-        guess = _cached_gaussian(cache, "guess", make)
+        guess = _cached_gaussian(cache, "guess", partial(network_guess, model, observation, rng))
+    some = observation.on_some_lines(SHARE, np.random.default_rng([seed, 2**31 + 3]))
+    optima = Optima(observation, some, partial(_steps, cache, progress))
+    count = 0
     for number in range(settings.attempts):
         start = guess if guess is not None and number == 0 else prior
         more = _with_more_samples(settings, number)
         rounds = regression_rounds(observation, start, [seed, number], more, cache, features)
-        attempts.append(_attempt(observation, start, rounds, seed, number, cache, progress))
-        outcome = attempts
-        if number > 0 or settings.attempts == 1 or is_surely_right(observation):
-            report = partial(_report, progress, number, IMPORTANCE_SAMPLING)
-            seeds = [seed, number, 2**31 + 2]
-            outcome = with_importance_samples(observation, attempts, seeds, cache, report)
-        if verdict(observation, outcome) != NOT_CONVERGED:
+        count += _search(optima, start, rounds, seed, number, progress)
+        if optima.is_settled or optima.is_exhausted:
             break
-    return outcome
+    report = partial(_report, progress, number, IMPORTANCE_SAMPLING)
+    drawn = posterior_samples(observation, optima.found, [seed, 2**31 + 2], cache, report)
+    return Outcome(optima.found, drawn, number + 1, count)
 
 
-def _attempt(
+def _steps(
+    cache: Cache,
+    progress: Progress,
     observation: Observation,
+    x: FloatArray,
+    name: str,
+    known: Sequence[Optimum],
+    roughly: bool,
+) -> Gaussian:
+    """Return where Gauss–Newton steps from x (unknown,) end."""
+    report = partial(_report, progress, int(name.split(".")[0]), GAUSS_NEWTON)
+    enough = ROUGHLY if roughly else ENOUGH
+    make = partial(gauss_newton, observation, x, report, known, enough)
+    return _cached_gaussian(cache, f"gauss_newton.{name}", make)
+
+
+def _search(
+    optima: Optima,
     start: Gaussian,
     rounds: Iterator[Round],
     seed: int,
     number: int,
-    cache: Cache,
     progress: Progress,
-) -> Attempt:
-    """Return what rounds and Gauss–Newton steps come to.
-
-    Steps are tried as soon as the distribution is narrow enough, and whenever it is half as wide as
-    it was then. Their optimum ends the rounds if it fits.
-    """
-
-    def steps(of: Observation, x: FloatArray, name: str) -> Gaussian:
-        report = partial(_report, progress, number, GAUSS_NEWTON)
-        make = partial(gauss_newton, of, x, progress=report)
-        return _cached_gaussian(cache, f"gauss_newton.{number}.{name}", make)
-
+) -> int:
+    """Add the optima of one attempt, and return how many rounds it has taken."""
     found, count = start, 0
-    spread = observation.unknowns.site_std(start.covariance)
+    spread = optima.observation.unknowns.site_std(start.covariance)
     next_try = TRIED_FROM
     while True:
         if spread < next_try:
             next_try = spread / 2
-            rng = np.random.default_rng([seed, number, count, 2])
-            near = agreed_optimum(observation, found, rng, steps, f"{count}")
-            if near is not None:
-                answer = steps(observation, near, f"{count}")
-                attempt = attempt_at(observation, found, answer, count)
-                if attempt.fits:
-                    return attempt
+            _start_about(optima, found, np.random.default_rng([seed, number, count, 2]), number)
+            if optima.is_settled or optima.is_exhausted:
+                return count
         one = next(rounds, None)
         if one is None:
-            return attempt_at(observation, found, steps(observation, found.mean, "last"), count)
+            optima.end_at(found.mean, number, f"{number}.last")
+            return count
         progress(Step(number, ROUND, count, one.misfit, one.spread))
         found, count, spread = one.distribution, count + 1, one.spread
+
+
+def _start_about(optima: Optima, found: Gaussian, rng: np.random.Generator, number: int) -> None:
+    """Let steps start at the mean of a distribution, and at draws from it."""
+    few, more = STARTS
+    tried = 0
+    while not optima.is_settled and not optima.is_exhausted:
+        if tried >= few and not optima.fits:
+            return
+        if tried >= more and optima.fits and not optima.is_wide:
+            return
+        x = found.mean if tried == 0 else found.draw(rng, 2)[0]
+        optima.start_from(x, number, f"{number}.{optima.starts}")
+        tried += 1
 
 
 def usual_settings(features: NetworkFeatures | None) -> InversionSettings:
@@ -198,31 +218,29 @@ def _report(
     progress(Step(attempt, stage, number, misfit, spread))
 
 
-def with_importance_samples(
+def posterior_samples(
     observation: Observation,
-    attempts: list[Attempt],
+    optima: Sequence[Optimum],
     seed: Sequence[int],
     cache: Cache = uncached,
     progress: Callable[[int, float, float], None] = lambda number, misfit, spread: None,
-) -> list[Attempt]:
-    """Return the attempts, the best with importance samples if its posterior is wide.
-
-    The first proposals are those with which the rounds and the Gauss–Newton steps of all attempts
-    that fit have ended.
-    """
-    chosen = best(attempts)
+) -> ImportanceSamples | None:
+    """Return samples of the posterior where it is no normal distribution about the best optimum."""
+    chosen, unknowns = best(optima), observation.unknowns
+    if not chosen.fits:
+        return None
+    share = shares(optima)
+    counts = [k for k in range(len(optima)) if share[k] > NEGLIGIBLE]
     width = max(STRAIGHT * BOLTZMANN * observation.measurement.temperature, LEAST_WIDTH)
-    bar = observation.unknowns.site_std(chosen.answer.covariance)
-    if not chosen.fits or bar < width:
-        return attempts
-    name = f"is_normal.{'.'.join(map(str, seed))}"
-    make = partial(_effective_share, observation, chosen.answer, [*seed, CHECKED])
-    if cache(name, make)["share"] > NORMAL:
-        return attempts
-    ends = [(one.last_proposal, widened(one.answer)) for one in attempts if one.fits]
-    drawn = importance_sampling(observation, [*chain(*ends)], seed, cache, progress)
-    instead = replace(chosen, answer=drawn.moments, importance_samples=drawn)
-    return [instead if attempt is chosen else attempt for attempt in attempts]
+    if len(counts) == 1:
+        if unknowns.site_std(chosen.answer.covariance) < width:
+            return None
+        name = f"is_normal.{'.'.join(map(str, seed))}"
+        make = partial(_effective_share, observation, chosen.answer, [*seed, CHECKED])
+        if cache(name, make)["share"] > NORMAL:
+            return None
+    mixture = [Part(widened(optima[k].answer), float(share[k])) for k in counts]
+    return importance_sampling(observation, mixture, seed, cache, progress)
 
 
 def _effective_share(

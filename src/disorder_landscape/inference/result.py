@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from disorder_landscape.inference.attempt import Attempt
+from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.posterior.importance_sampling import weighted_samples
 from disorder_landscape.inference.problem.distributions import Distribution
 from disorder_landscape.inference.problem.observation import Observation
@@ -31,11 +31,11 @@ HERMITE = 61
 """Nodes by which the mean of a parameter's distribution is taken."""
 
 
-def result_of(observation: Observation, chosen: Attempt, samples: int, seed: int) -> xr.Dataset:
+def result_of(observation: Observation, outcome: Outcome, samples: int, seed: int) -> xr.Dataset:
     """Return the dataset of `infer`, but for the attributes that tell how it was found."""
     m, unknowns = observation.measurement, observation.unknowns
-    mean, covariance = chosen.answer.mean, chosen.answer.covariance
-    X = chosen.draw(np.random.default_rng([seed, 2**31 + 1]), samples)
+    mean, covariance = outcome.answer.mean, outcome.answer.covariance
+    X = outcome.draw(np.random.default_rng([seed, 2**31 + 1]), samples)
     maps = _maps(m.mu, m.B)
     T_IV = _visibility(observation, np.concatenate([mean[None], X]), maps)
     G = observation.conductances(mean[None])[0]
@@ -44,7 +44,7 @@ def result_of(observation: Observation, chosen: Attempt, samples: int, seed: int
         "potential": (("sample", "site"), unknowns.potential(X)),
         "potential_mean": ("site", unknowns.potential(mean)),
         "potential_std": ("site", unknowns.potential_std(covariance)),
-        "misfit": ("channel", observation.misfit(chosen.data)),
+        "misfit": ("channel", observation.misfit(outcome.best.data)),
         **{name: (AXES, G[..., c]) for c, name in enumerate(CONDUCTANCES)},
         "T_IV": (("lead", *grid), T_IV[0]),
         "P_topological": (grid, (T_IV[1:, 0] < 0).mean(axis=0)),
@@ -81,7 +81,7 @@ def result_of(observation: Observation, chosen: Attempt, samples: int, seed: int
             dataset[name + ending] = (dims, value, attrs)
     dataset.attrs = {
         **unknowns.given.known,
-        **evidence(observation, chosen, X),
+        **evidence(observation, outcome, X),
         **left_open(unknowns, covariance),
         "prior": json.dumps(unknowns.given.to_dict()),
     }
@@ -98,20 +98,20 @@ def moments(belief: Distribution, mean: float, std: float) -> tuple[float, float
     return average, float(np.sqrt(weight @ (values - average) ** 2))
 
 
-def evidence(observation: Observation, chosen: Attempt, X: FloatArray) -> dict[str, float]:
+def evidence(observation: Observation, outcome: Outcome, X: FloatArray) -> dict[str, float]:
     """Return log_evidence and effective_sample_size, from samples weighted by the exact posterior.
 
     Parameters
     ----------
     observation : Observation
-    chosen : Attempt
+    outcome : Outcome
         Its own importance samples serve, if it has any.
     X : array, shape (sample, unknown)
         Samples of its answer, which serve otherwise.
     """
-    found = chosen.importance_samples
+    found = outcome.importance_samples
     if found is None:
-        found = weighted_samples(observation, chosen.answer, X)
+        found = weighted_samples(observation, outcome.answer, X)
     of_the_errors = -0.5 * np.log(2 * np.pi * observation.variance).sum()
     return {
         "log_evidence": found.log_mean_weight + of_the_errors,

@@ -24,7 +24,6 @@ from scipy.stats import chi2, f, kstest, norm, uniform
 from disorder_landscape.arguments import require
 from disorder_landscape.config import Positive
 from disorder_landscape.files import write_picture
-from disorder_landscape.inference.attempt import best
 from disorder_landscape.inference.invert import invert
 from disorder_landscape.inference.posterior.markov_chain import independence_chain
 from disorder_landscape.model.parameters import FloatArray
@@ -76,7 +75,7 @@ class CalibrationPlan(Plan):
         """
         observation, _ = fresh_wire(fresh_wires.Task(task.model, self.noise, task.index))
         network = network_of(task.model, self.noise)
-        answer = best(invert(observation, network, seed=task.index)).answer
+        answer = invert(observation, network, seed=task.index).answer
         rng = np.random.default_rng(task.index)
         chain = independence_chain(observation, answer, self.length, rng)
         scale = np.sqrt(np.diag(answer.covariance))

@@ -20,8 +20,8 @@ from pydantic import AfterValidator, Field
 from disorder_landscape.chain import MODELS, shipped_model
 from disorder_landscape.config import DatasetConfig, Positive
 from disorder_landscape.dataset.realizations import realization
-from disorder_landscape.inference.attempt import Attempt, best
 from disorder_landscape.inference.invert import invert
+from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.measurement import Measurement, empty_measurement
 from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
@@ -126,7 +126,7 @@ def measured(
 class Inverted:
     """What an inversion has come to."""
 
-    chosen: Attempt
+    found: Outcome
     outcome: dict[str, object]
     """`spread`, the answer's own standard deviation of V in meV; `effective_sample_size`, NaN
     without importance sampling; `excess`, `verdict`, `attempts`, `rounds`, `seconds`."""
@@ -134,27 +134,27 @@ class Inverted:
     @property
     def answer(self) -> Gaussian:
         """The normal distribution that describes it."""
-        return self.chosen.answer
+        return self.found.answer
 
 
 def inverted(observation: Observation, network: TrainedModel | None, seed: int) -> Inverted:
     """Invert a measurement, and take the time."""
     begun = time.perf_counter()
-    attempts = invert(observation, network, seed)
+    found = invert(observation, network, seed)
     seconds = time.perf_counter() - begun
-    chosen = best(attempts)
+    drawn = found.importance_samples
     outcome: dict[str, object] = {
-        "spread": observation.unknowns.site_std(chosen.answer.covariance),
+        "spread": observation.unknowns.site_std(found.answer.covariance),
         "effective_sample_size": np.nan
-        if chosen.importance_samples is None
-        else chosen.importance_samples.effective_sample_size,
-        "excess": chosen.excess,
-        "verdict": verdict(observation, attempts),
-        "attempts": len(attempts),
-        "rounds": sum(attempt.rounds for attempt in attempts),
+        if drawn is None
+        else drawn.effective_sample_size,
+        "excess": found.best.excess,
+        "verdict": verdict(observation, found),
+        "attempts": found.attempts,
+        "rounds": found.rounds,
         "seconds": seconds,
     }
-    return Inverted(chosen, outcome)
+    return Inverted(found, outcome)
 
 
 def wrong(table: pd.DataFrame) -> pd.Series:

@@ -168,7 +168,7 @@ def unmodelled_row(task: Task, samples: int, every: int) -> dict[str, object]:
         measured(other_settings, other_G, task.noise, task.index, 3), unknowns, noise
     )
     rng = np.random.default_rng([SEED, task.index, 4])
-    predicted = further.simulate(found.chosen.draw(rng, samples))
+    predicted = further.simulate(found.found.draw(rng, samples))
     return rounded(
         {
             "model": task.model,

@@ -1,11 +1,12 @@
 """Samples of a posterior that is no normal distribution: importance sampling.
 
 Where the noise hides much, the posterior is as wide as a peak of the conductances or wider. Then it
-is no normal distribution about one optimum. It bends, and has several maxima. But there the
-distributions with which rounds and Gauss–Newton steps end are nearly as wide as it is. So samples
-of these, weighted with the exact posterior, are samples of the posterior. If few of them have most
-of the weight, the next samples are drawn from a normal distribution with the weighted mean and
-covariance, and so on. All samples count, as if drawn from the mixture of all proposals (adaptive
+is no normal distribution about one optimum. It bends, and has several maxima. But the normal
+distributions about the optima are nearly as wide as it is. So samples of their mixture, weighted
+with the exact posterior, are samples of the posterior. If few of them have most of the weight, the
+mixture is fitted to the weighted samples, and so on: each of its normal distributions gets the
+mean, the covariance and the share of the samples that it is responsible for (Cappé et al., Stat.
+Comput. 18, 447 (2008)). All samples count, as if drawn from the mixture of all proposals (adaptive
 multiple importance sampling: Cornuet et al., Scand. J. Stat. 39, 798 (2012)). As long as a few
 samples have all the weight, the weights are tempered: raised to a power below one (Koblents and
 Míguez, Stat. Comput. 25, 407 (2015)).
@@ -16,10 +17,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq
+from scipy.special import softmax
 
 from disorder_landscape.inference.checkpoint import Cache, uncached
 from disorder_landscape.inference.problem.gaussian import Gaussian, log_density, log_mixture
@@ -47,6 +49,9 @@ are right within 1 %."""
 WIDER = 1.2
 """Proposals have this many times the standard deviation of the weighted samples, or of an
 answer."""
+LEAST_PART = 0.1
+"""Each normal distribution of a mixture gets this part of an equal share of the samples at
+least."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,9 +93,16 @@ class ImportanceSamples:
         return self.samples[at]
 
 
+class Part(NamedTuple):
+    """One normal distribution of a mixture, and its share."""
+
+    proposal: Gaussian
+    share: float
+
+
 def importance_sampling(
     observation: Observation,
-    proposals: Sequence[Gaussian],
+    mixture: Sequence[Part],
     seed: Sequence[int],
     cache: Cache = uncached,
     progress: Callable[[int, float, float], None] = lambda number, misfit, spread: None,
@@ -100,7 +112,7 @@ def importance_sampling(
     Parameters
     ----------
     observation : Observation
-    proposals : sequence of Gaussian
+    mixture : sequence of Part
         Where the first samples come from, which must be about as wide as the posterior.
     seed : sequence of int
     cache : callable, optional
@@ -115,20 +127,50 @@ def importance_sampling(
     X, height = np.empty((0, len(unknowns.names))), np.empty(0)
     for number in range(ITERATIONS):
         rng = np.random.default_rng([*seed, number])
-        each = 2 * -(-count // (2 * len(proposals)))
-        drawn += [(proposal, each) for proposal in proposals]
-        new = np.concatenate([proposal.draw(rng, each) for proposal in proposals])
+        each = _numbers(mixture, count)
+        now = [(part.proposal, k) for part, k in zip(mixture, each, strict=True)]
+        drawn += now
+        new = np.concatenate([proposal.draw(rng, k) for proposal, k in now])
         name = f"importance_sampling.{'.'.join(map(str, seed))}.{number}"
         simulated = cache(name, partial(_simulated, observation, new))
         X, height = np.concatenate([X, new]), np.append(height, simulated["height"])
         found = tempered(X, -0.5 * height - log_mixture(drawn, X), LEAST_SHARE * count)
-        moments = found.moments
-        progress(number, simulated["misfit"], unknowns.site_std(moments.covariance))
+        progress(number, simulated["misfit"], unknowns.site_std(found.moments.covariance))
         if found.is_enough:
             break
         if found.effective_sample_size < KEPT * len(X):
-            proposals = [widened(moments)]
+            mixture = fitted(mixture, found)
     return found
+
+
+def _numbers(mixture: Sequence[Part], count: int) -> list[int]:
+    """Return how many samples each part gets, an even number."""
+    share = np.maximum([part.share for part in mixture], LEAST_PART / len(mixture))
+    return [2 * int(np.ceil(count * one / 2)) for one in share / share.sum()]
+
+
+def fitted(mixture: Sequence[Part], found: ImportanceSamples) -> list[Part]:
+    """Return a mixture that is nearer to the posterior, by one step of expectation maximisation.
+
+    A part's covariance is mixed with what it was, the more so the fewer samples it has.
+    """
+    X, size = found.samples, found.samples.shape[1]
+    log = np.array([np.log(part.share) + log_density(part.proposal, X) for part in mixture])
+    responsible = found.weight * softmax(log, axis=0)
+    parts = []
+    for part, weight in zip(mixture, responsible, strict=True):
+        share = weight.sum()
+        if share < LEAST_SHARE / len(X):
+            parts.append(Part(part.proposal, share))
+            continue
+        own = ImportanceSamples(X, weight / share)
+        few, many = size, own.effective_sample_size
+        mean = weight @ X / share
+        off = X - mean
+        covariance = (off.T * weight) @ off / share
+        mixed = (many * WIDER**2 * covariance + few * part.proposal.covariance) / (many + few)
+        parts.append(Part(Gaussian(mean, (mixed + mixed.T) / 2), share))
+    return parts
 
 
 def widened(answer: Gaussian) -> Gaussian:

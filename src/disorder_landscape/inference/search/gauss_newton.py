@@ -11,10 +11,11 @@ guess, steps stopped 10 to 100 µeV off. With the exact ones they find the optim
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from disorder_landscape.inference.optimum import Optimum
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.observation import Observation, objective, overall_misfit
 from disorder_landscape.model.parameters import FloatArray
@@ -30,12 +31,19 @@ DAMPING = 4.0, 1e-2, 1e6
 ENOUGH = 0.3
 """Steps end when one lowers −2 log(posterior) by less than this, which is half a standard deviation
 of all unknowns together. The simulation's own error adds about as much at a noise of 0.01 e²/h."""
+ROUGHLY = 3.0
+"""… or by less than this, where only an optimum's place is asked for."""
+NEAR = 0.5
+"""Steps end at a known optimum if they come this near, in its standard deviations, root mean square
+over the principal axes."""
 
 
 def gauss_newton(
     observation: Observation,
     start: FloatArray,
     progress: Callable[[int, float, float], None] = lambda number, misfit, spread: None,
+    known: Sequence[Optimum] = (),
+    enough: float = ENOUGH,
 ) -> Gaussian:
     """Return the local optimum that damped Gauss–Newton steps lead to, with Laplace's covariance.
 
@@ -46,6 +54,10 @@ def gauss_newton(
     progress : callable
         Called before each step, with its number, the root-mean-square misfit in e²/h and the
         standard deviation of V in meV.
+    known : sequence of Optimum
+        Steps that come near one of these, and not below it, end there.
+    enough : float
+        ENOUGH, or ROUGHLY.
     """
     prior, variance = observation.unknowns.prior, observation.variance
     precision = np.linalg.inv(prior.covariance)
@@ -76,11 +88,19 @@ def gauss_newton(
         gained = best - found
         if gained > 0:
             x, y, best = tried, y_tried, found
-        if gained < ENOUGH:
+        if gained < enough:
             break
+        for one in known:
+            if best > one.objective and is_near(one, x):
+                return one.answer
         slope = linearise(observation, x)[1]
         damping = 0.0 if damping <= first else damping / factor
     return laplace(observation, x, slope)
+
+
+def is_near(optimum: Optimum, x: FloatArray) -> bool:
+    """Return whether steps at x (unknown,) may end at this optimum."""
+    return bool(optimum.answer.squared_distance(x) < NEAR**2 * x.size)
 
 
 def laplace(observation: Observation, mean: FloatArray, slope: FloatArray) -> Gaussian:

@@ -1,0 +1,103 @@
+"""An optimum of the posterior, and whether the noise explains the misfit there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import softmax
+
+from disorder_landscape.inference.problem.gaussian import Gaussian
+from disorder_landscape.inference.problem.observation import (
+    Observation,
+    objective,
+    squared_misfits,
+)
+from disorder_landscape.model.parameters import FloatArray
+
+TOLERATED = 3.5
+"""χ² of all data, or of one channel's, may be this many of its standard deviations above its
+mean."""
+SAME_ANSWER = 2.0
+"""Two optima are the same if they are closer than this many of their standard deviations, root mean
+square over the principal axes. (Where the posterior bends they differ by about one.)"""
+
+
+@dataclass(frozen=True, eq=False)
+class Optimum:
+    """Where Gauss–Newton steps have ended."""
+
+    answer: Gaussian
+    """Laplace's approximation of the posterior there."""
+    data: FloatArray
+    """Simulated data of the wire, shape (datum,)."""
+    objective: float
+    """−2 log of its posterior density, up to a constant."""
+    excess: float
+    """(χ² − its mean) / its standard deviation: of all data, or of one channel, if that is more."""
+    found_by: tuple[int, ...] = (0,)
+    """The attempt of each of the starts that have led here."""
+
+    @property
+    def fits(self) -> bool:
+        """Whether the noise explains the misfit."""
+        return self.excess <= TOLERATED
+
+    @property
+    def log_evidence(self) -> float:
+        """The logarithm of the posterior's integral over this maximum, up to a constant."""
+        return 0.5 * float(np.linalg.slogdet(self.answer.covariance)[1] - self.objective)
+
+
+def optimum_at(observation: Observation, answer: Gaussian, attempt: int = 0) -> Optimum:
+    """Return the optimum where a start of an attempt has ended."""
+    data = observation.simulate(answer.mean[None])[0]
+    squares = squared_misfits(observation, data)
+    height = float(objective(observation, answer.mean, data))
+    return Optimum(answer, data, height, chi_square_excess(observation, squares), (attempt,))
+
+
+def chi_square_excess(observation: Observation, squares: FloatArray) -> float:
+    """Return (χ² − its mean) / its standard deviation, the largest over all data and each channel.
+
+    Parameters
+    ----------
+    observation : Observation
+    squares : array, shape (datum,)
+        Squared misfits in units of the errors' variance.
+    """
+    sets = [np.ones(squares.size, dtype=bool)]
+    sets += [observation.channel == c for c in np.unique(observation.channel)]
+    return max(float((squares[s].sum() - s.sum()) / np.sqrt(2 * s.sum())) for s in sets)
+
+
+def best(optima: Sequence[Optimum]) -> Optimum:
+    """Return the most probable optimum."""
+    return min(optima, key=lambda one: one.objective)
+
+
+def shares(optima: Sequence[Optimum]) -> FloatArray:
+    """Return the share of the posterior that each optimum has by Laplace's approximation."""
+    return np.asarray(softmax([one.log_evidence for one in optima]))
+
+
+def unseen(optima: Sequence[Optimum]) -> float:
+    """Return an estimate of how much of the posterior is at optima that no start has found.
+
+    As much as is at those that only one start has found (Good, Biometrika 40, 237 (1953)).
+    """
+    alone = np.array([len(one.found_by) == 1 for one in optima])
+    return float(shares(optima)[alone].sum())
+
+
+def same_answer(observation: Observation, one: Optimum, other: Optimum) -> bool:
+    """Return whether two optima are the same."""
+    scatter = max(1.0, misfit(observation, one))
+    squares = one.answer.squared_distance(other.answer.mean) / one.answer.mean.size
+    return bool(squares < (SAME_ANSWER * scatter) ** 2)
+
+
+def misfit(observation: Observation, optimum: Optimum) -> float:
+    """Return its root-mean-square misfit in units of the data's errors."""
+    return float(np.sqrt(squared_misfits(observation, optimum.data).mean()))

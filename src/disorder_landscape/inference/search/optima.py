@@ -1,0 +1,122 @@
+"""The optima of the posterior to which Gauss–Newton steps lead from many starts.
+
+The conductances are peaks of a few kT, so that −2 log of the posterior density has many minima.
+From a network's guess or a distribution of the rounds some starts lead to the best of them: nearly
+all from 5 to 30 µeV off, a quarter to a half from 100 µeV off. One start alone may end in a minimum
+beside the best one that fits all but as well. Starts that agree tell; and where the noise leaves
+several minima that are about as probable, these are all looked for, until each has been found more
+than once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+
+from disorder_landscape.inference.optimum import Optimum, best, optimum_at, same_answer, unseen
+from disorder_landscape.inference.problem.gaussian import Gaussian
+from disorder_landscape.inference.problem.observation import Observation
+from disorder_landscape.inference.search.gauss_newton import is_near
+from disorder_landscape.inference.verdict import UNSEEN, is_surely_right
+from disorder_landscape.model.parameters import BOLTZMANN, FloatArray
+
+SHARE = 0.25
+"""Of the data that steps from a start use first: they take a quarter of the time."""
+REACH = 30.0
+"""Steps go on with all data unless the optimum on these is worse than the best one so far by more
+than this in −2 log(posterior)."""
+AGREEING = 2, 3
+"""How many starts must lead to the best optimum: where the noise is so small that an answer that
+fits is right all but surely, and otherwise. (Of thirteen such wires without noise, one start ended
+4 µeV off and fitted.)"""
+WIDE = 1.0
+"""The posterior may have several maxima if V is uncertain by more than this many kT. …"""
+STARTS_WHEN_WIDE = 8, 16
+"""… Then there are at least, and at most, so many starts."""
+
+Steps = Callable[[Observation, FloatArray, str, Sequence[Optimum], bool], Gaussian]
+"""Gauss–Newton steps of an observation, from a start, by a name, which may end at known optima, and
+whether only roughly."""
+
+
+@dataclass(eq=False)
+class Optima:
+    """What starts have led to so far.
+
+    Parameters
+    ----------
+    observation : Observation
+    some : Observation
+        The part of its data that steps use first.
+    steps : callable
+    """
+
+    observation: Observation
+    some: Observation
+    steps: Steps
+    found: list[Optimum] = field(default_factory=list)
+    starts: int = 0
+    _on_some: list[tuple[Optimum, int | None]] = field(default_factory=list)
+    """Optima on these data, and which of those `found` they lead to, if any."""
+
+    @property
+    def fits(self) -> bool:
+        """Whether the best of them explains the data."""
+        return bool(self.found) and best(self.found).fits
+
+    @property
+    def is_wide(self) -> bool:
+        """Whether the posterior may have several maxima."""
+        bar = self.observation.unknowns.site_std(best(self.found).answer.covariance)
+        return bar > WIDE * BOLTZMANN * self.observation.measurement.temperature
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether more starts are not expected to change anything."""
+        if not self.fits:
+            return False
+        needed = AGREEING[0 if is_surely_right(self.observation) else 1]
+        enough = not self.is_wide or self.starts >= STARTS_WHEN_WIDE[0]
+        return enough and len(best(self.found).found_by) >= needed and unseen(self.found) <= UNSEEN
+
+    @property
+    def is_exhausted(self) -> bool:
+        """Whether there have been as many starts as are worth their time."""
+        return self.fits and self.is_wide and self.starts >= STARTS_WHEN_WIDE[1]
+
+    def start_from(self, x: FloatArray, attempt: int, name: str) -> None:
+        """Find the optimum that steps from x (unknown,) lead to."""
+        self.starts += 1
+        known = [one for one, _ in self._on_some]
+        end = self.steps(self.some, x, f"{name}.some", known, True)
+        near = optimum_at(self.some, end, attempt)
+        for one, leads_to in self._on_some:
+            if is_near(one, end.mean):
+                self._found_again(leads_to, attempt)
+                return
+        worse = bool(known) and near.objective > best(known).objective + REACH
+        to = None if worse else self._optimum_from(end.mean, attempt, name)
+        self._on_some.append((near, to))
+
+    def end_at(self, x: FloatArray, attempt: int, name: str) -> None:
+        """Find the optimum that steps from x (unknown,) with all data lead to."""
+        self.starts += 1
+        self._optimum_from(x, attempt, name)
+
+    def _optimum_from(self, x: FloatArray, attempt: int, name: str) -> int:
+        """Return which optimum of all data steps lead to."""
+        end = self.steps(self.observation, x, name, self.found, False)
+        new = optimum_at(self.observation, end, attempt)
+        for k, one in enumerate(self.found):
+            if same_answer(self.observation, one, new):
+                better = new if new.objective < one.objective else one
+                self.found[k] = replace(better, found_by=one.found_by)
+                self._found_again(k, attempt)
+                return k
+        self.found.append(new)
+        return len(self.found) - 1
+
+    def _found_again(self, k: int | None, attempt: int) -> None:
+        if k is not None:
+            one = self.found[k]
+            self.found[k] = replace(one, found_by=(*one.found_by, attempt))
