@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose
 from scipy.stats import kstest, norm, uniform
 
 import disorder_landscape as dl
+import disorder_landscape.inference.problem.observation as observation_module
 from disorder_landscape import ArgumentError
 from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.config import DatasetConfig
@@ -19,6 +20,7 @@ from disorder_landscape.inference.problem.measurement import empty_measurement
 from disorder_landscape.inference.problem.parameters import BY_NAME, PARAMETERS
 from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.problem.unknowns import Unknowns
+from disorder_landscape.inference.search.gauss_newton import linearise
 from disorder_landscape.model.disorder import smooth_noise
 from disorder_landscape.model.quantities import CONDUCTANCES
 
@@ -200,13 +202,28 @@ def test_slopes_are_those_of_the_simulation(seed):
     """By all parameters at once, at random devices."""
     o = observation()
     x = 0.7 * np.random.default_rng(seed).normal(size=len(o.unknowns.names))
-    data, slopes = o.exact_slopes(x)
+    data, slopes = linearise(o, x)
     step = 1e-4 * np.eye(x.size)
     around = o.simulate(np.concatenate([[x], x + step, x - step]))
     up, down = np.split(around[1:], 2)
     assert_allclose(data, around[0], atol=2e-4)
     error = abs((up - down) / 2e-4 - slopes).max(axis=1)
     assert (error < 0.02 * abs(slopes).max() + 0.02).all()  # as the simulation's own error makes it
+
+
+def test_slopes_that_are_not_trusted_are_differences(monkeypatch):
+    """… of the one (μ, B) alone, whatever is not measured elsewhere."""
+    o = observation()
+    G = np.zeros((len(MU), len(o.measurement.B), o.measurement.bias.size, 4))
+    G[0, 1], G[1, 0, 0] = np.nan, np.nan
+    o = replace(o, measurement=replace(o.measurement, G=G))
+    x = 0.3 * np.ones(len(o.unknowns.names))
+    exact, slopes = linearise(o, x)
+    monkeypatch.setattr(observation_module, "TRUSTED", 0.0)
+    assert o.exact_slopes(x).doubtful.all()
+    data, differences = linearise(o, x)
+    assert_allclose(data, exact, atol=2e-4)
+    assert 0 < abs(differences - slopes).max() < 0.05 * abs(slopes).max() + 0.05
 
 
 def test_slopes_are_not_claimed_where_there_are_none_in_closed_form():

@@ -118,7 +118,14 @@ def precision_of(observation: Observation, slope: FloatArray) -> FloatArray:
 def linearise(observation: Observation, x: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the data of x (unknown,), shape (datum,), and their slopes (unknown, datum)."""
     exact = observation.exact_slopes(x)
-    return _differences(observation, x) if exact is None else exact
+    if exact is None:
+        return _differences(observation, x)
+    y, slope = exact.data.copy(), exact.slope.copy()
+    for mu, B in np.argwhere(exact.doubtful):
+        of_set, at = observation.of_set(mu, B)
+        if at.size:
+            y[at], slope[:, at] = _differences(of_set, x)
+    return y, slope
 
 
 def _differences(observation: Observation, x: FloatArray) -> tuple[FloatArray, FloatArray]:
