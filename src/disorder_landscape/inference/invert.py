@@ -26,7 +26,7 @@ from disorder_landscape.inference.posterior.importance_sampling import (
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.search.first_guess import network_guess
-from disorder_landscape.inference.search.gauss_newton import ENOUGH, ROUGHLY, gauss_newton
+from disorder_landscape.inference.search.gauss_newton import gauss_newton
 from disorder_landscape.inference.search.network_features import NetworkFeatures, network_features
 from disorder_landscape.inference.search.optima import SHARE, Optima
 from disorder_landscape.inference.search.regression_rounds import (
@@ -35,6 +35,7 @@ from disorder_landscape.inference.search.regression_rounds import (
     RoundSettings,
     regression_rounds,
 )
+from disorder_landscape.inference.verdict import is_surely_right
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.model.parameters import BOLTZMANN, FloatArray
 
@@ -44,6 +45,9 @@ whenever it is half as wide. …"""
 STARTS = 2, 4
 """… They start at its mean and at draws: so many if none ends at an optimum that fits, or if one
 does."""
+NEARBY = 0.2
+"""Where an answer that fits is right all but surely, another start must find it again from this
+part of the distribution's width away."""
 STRAIGHT = 0.25
 """Whether the posterior is a normal distribution is asked if the error bar of V is more than this
 many kT, or …"""
@@ -151,8 +155,7 @@ def _steps(
 ) -> Gaussian:
     """Return where Gauss–Newton steps from x (unknown,) end."""
     report = partial(_report, progress, int(name.split(".")[0]), GAUSS_NEWTON)
-    enough = ROUGHLY if roughly else ENOUGH
-    make = partial(gauss_newton, observation, x, report, known, enough)
+    make = partial(gauss_newton, observation, x, report, known, roughly)
     return _cached_gaussian(cache, f"gauss_newton.{name}", make)
 
 
@@ -191,7 +194,10 @@ def _start_about(optima: Optima, found: Gaussian, rng: np.random.Generator, numb
             return
         if tried >= more and optima.fits and not optima.is_wide:
             return
-        x = found.mean if tried == 0 else found.draw(rng, 2)[0]
+        about = found
+        if optima.fits and is_surely_right(optima.observation):
+            about = Gaussian(best(optima.found).answer.mean, NEARBY**2 * found.covariance)
+        x = found.mean if tried == 0 else about.draw(rng, 2)[0]
         optima.start_from(x, number, f"{number}.{optima.starts}")
         tried += 1
 

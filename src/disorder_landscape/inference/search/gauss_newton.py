@@ -33,6 +33,10 @@ ENOUGH = 0.3
 of all unknowns together. The simulation's own error adds about as much at a noise of 0.01 e²/h."""
 ROUGHLY = 3.0
 """… or by less than this, where only an optimum's place is asked for."""
+FAR_OFF, CREEPING, LATELY = 2.0, 0.5, 4
+"""Steps that creep end, too, where only a place is asked for: if χ² is more than this many times
+the number of data, and −2 log(posterior) is more than this part of what it was so many steps ago.
+(Steps that arrive halve it in one or two.)"""
 NEAR = 0.5
 """Steps end at a known optimum if they come this near, in its standard deviations, root mean square
 over the principal axes."""
@@ -43,7 +47,7 @@ def gauss_newton(
     start: FloatArray,
     progress: Callable[[int, float, float], None] = lambda number, misfit, spread: None,
     known: Sequence[Optimum] = (),
-    enough: float = ENOUGH,
+    roughly: bool = False,
 ) -> Gaussian:
     """Return the local optimum that damped Gauss–Newton steps lead to, with Laplace's covariance.
 
@@ -56,14 +60,15 @@ def gauss_newton(
         standard deviation of V in meV.
     known : sequence of Optimum
         Steps that come near one of these, and not below it, end there.
-    enough : float
-        ENOUGH, or ROUGHLY.
+    roughly : bool
+        Whether only the place of the optimum is asked for.
     """
     prior, variance = observation.unknowns.prior, observation.variance
     precision = np.linalg.inv(prior.covariance)
     x, (factor, first, largest) = start, DAMPING
     y, slope = linearise(observation, start)
-    best, damping = objective(observation, x, y), 0.0
+    best, damping = float(objective(observation, x, y)), 0.0
+    heights = [best]
     for number in range(STEPS):
         information = precision_of(observation, slope)
         spread = observation.unknowns.site_std(np.asarray(np.linalg.inv(information), np.float64))
@@ -73,7 +78,7 @@ def gauss_newton(
             damped = information + damping * np.diag(np.diag(information))
             tried = x + np.linalg.solve(damped, downhill)
             y_tried = observation.simulate(tried[None])[0]
-            found = objective(observation, tried, y_tried)
+            found = float(objective(observation, tried, y_tried))
             if found < best or damping > largest:
                 break
             damping = max(first, factor**2 * damping)
@@ -81,14 +86,15 @@ def gauss_newton(
         while found < best:  # a valley that bends: a line search costs next to nothing
             further = tried + step
             y_further = observation.simulate(further[None])[0]
-            found_further = objective(observation, further, y_further)
+            found_further = float(objective(observation, further, y_further))
             if found_further >= found:
                 break
             tried, y_tried, found, step = further, y_further, found_further, 2 * step
         gained = best - found
         if gained > 0:
             x, y, best = tried, y_tried, found
-        if gained < enough:
+        heights.append(best)
+        if gained < (ROUGHLY if roughly else ENOUGH) or (roughly and _creeps(heights, y.size)):
             break
         for one in known:
             if best > one.objective and is_near(one, x):
@@ -96,6 +102,13 @@ def gauss_newton(
         slope = linearise(observation, x)[1]
         damping = 0.0 if damping <= first else damping / factor
     return laplace(observation, x, slope)
+
+
+def _creeps(heights: Sequence[float], data: int) -> bool:
+    """Return whether steps through these values of −2 log(posterior) lead nowhere."""
+    if len(heights) <= LATELY or heights[-1] < FAR_OFF * data:
+        return False
+    return heights[-1] > CREEPING * heights[-1 - LATELY]
 
 
 def is_near(optimum: Optimum, x: FloatArray) -> bool:

@@ -23,14 +23,15 @@ from disorder_landscape.model.parameters import BOLTZMANN, FloatArray
 SHARE = 0.25
 """Of the data that steps from a start use first: they take a quarter of the time."""
 REACH = 30.0
-"""Steps go on with all data unless the optimum on these is worse than the best one so far by more
-than this in −2 log(posterior)."""
+"""Steps go on with all data if the optimum on these explains them, and is worse than the best one
+so far by no more than this in −2 log(posterior)."""
 AGREEING = 2, 3
 """How many starts must lead to the best optimum: where the noise is so small that an answer that
 fits is right all but surely, and otherwise. (Of thirteen such wires without noise, one start ended
 4 µeV off and fitted.)"""
 WIDE = 1.0
-"""The posterior may have several maxima if V is uncertain by more than this many kT. …"""
+"""The posterior may have several maxima if the noise may hide them and V is uncertain by more than
+this many kT. …"""
 STARTS_WHEN_WIDE = 8, 16
 """… Then there are at least, and at most, so many starts."""
 
@@ -67,6 +68,8 @@ class Optima:
     @property
     def is_wide(self) -> bool:
         """Whether the posterior may have several maxima."""
+        if is_surely_right(self.observation):
+            return False
         bar = self.observation.unknowns.site_std(best(self.found).answer.covariance)
         return bar > WIDE * BOLTZMANN * self.observation.measurement.temperature
 
@@ -94,8 +97,9 @@ class Optima:
             if is_near(one, end.mean):
                 self._found_again(leads_to, attempt)
                 return
-        worse = bool(known) and near.objective > best(known).objective + REACH
-        to = None if worse else self._optimum_from(end.mean, attempt, name)
+        least = best([*known, near]).objective
+        leave = not near.fits or near.objective > least + REACH
+        to = None if leave else self._optimum_from(end.mean, attempt, name)
         self._on_some.append((near, to))
 
     def end_at(self, x: FloatArray, attempt: int, name: str) -> None:
