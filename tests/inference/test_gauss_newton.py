@@ -1,8 +1,15 @@
 """Gauss–Newton steps end at optima that are known, with their width."""
 
-import numpy as np
+from dataclasses import replace
 
+import numpy as np
+import pytest
+
+from disorder_landscape.inference.optimum import optimum_at
+from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.search.gauss_newton import (
+    CREEPING,
+    LATELY,
     gauss_newton,
     linearise,
 )
@@ -30,6 +37,39 @@ def test_gauss_newton_follows_a_valley_that_bends():
     floor[:2] = -1.5, 3.75
     Y = valley.simulate(gauss_newton(valley, floor).mean[None])[0]
     assert ((Y - valley.data) ** 2 / valley.variance).sum() < 0.5
+
+
+def test_steps_end_at_an_optimum_that_is_known():
+    """… if they come near it from above, and not where they come out below."""
+    slope = np.eye(SIZE, 40)
+    measured = Linear(np.zeros(40), slope, variance=np.ones(40))
+    exact = optimum_at(measured, posterior(measured))
+    near = Gaussian(exact.answer.mean + 0.1, exact.answer.covariance)
+    known = optimum_at(measured, near)
+    assert gauss_newton(measured, np.ones(SIZE), known=[known]).mean == pytest.approx(0.0, abs=1e-6)
+    higher = replace(known, objective=-1.0)
+    assert gauss_newton(measured, np.ones(SIZE), known=[higher]) is near
+
+
+def test_steps_that_creep_end_where_only_a_place_is_asked_for():
+    """Along a parabola so narrow that each step is short."""
+
+    class Gorge(Linear):
+        def simulate(self, X):
+            Y = np.zeros((len(X), 40))
+            Y[:, 0], Y[:, 1] = X[:, 0], 300 * (X[:, 1] - X[:, 0] ** 2)
+            return Y
+
+    gorge = Gorge(200 * np.eye(40)[0], np.empty(0), variance=np.full(40, 0.1**2))
+    steps = {}
+    for roughly in (False, True):
+        count = []
+        gauss_newton(gorge, np.zeros(SIZE), lambda *step, c=count: c.append(step[1]), (), roughly)
+        steps[roughly] = count
+    rough = steps[True]
+    assert len(rough) == LATELY < len(steps[False])
+    assert rough == steps[False][: len(rough)]
+    assert rough[-1] ** 2 > CREEPING * rough[0] ** 2
 
 
 def test_slopes_are_the_derivatives(linear):

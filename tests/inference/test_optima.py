@@ -9,7 +9,7 @@ from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.search.gauss_newton import gauss_newton
 from disorder_landscape.inference.search.optima import Optima
 from disorder_landscape.model.parameters import BOLTZMANN
-from linear_data import DATA, SIZE, UNKNOWNS, Linear, Measured, posterior
+from linear_data import DATA, SIZE, Linear, Measured, posterior
 
 COLD = Measured(temperature=1e-3)
 AXIS = np.eye(SIZE)[0]
@@ -94,11 +94,25 @@ def test_starts_far_above_the_best_are_left_with_some_of_the_data(folds):
 
 
 def test_data_that_no_optimum_explains_are_not_settled(linear):
+    """Steps that do not explain some of them are not continued; at last they are, with all."""
     off = replace(linear, data=linear.data + 10 * (-1.0) ** np.arange(DATA))
     optima = optima_of(off)
     for k in range(20):
         optima.start_from(posterior(off).mean, 0, f"0.{k}")
+    assert optima.found == []
+    assert not optima.fits
+    optima.end_at(posterior(off).mean, 0, "0.last")
+    assert len(optima.found) == 1
     assert not optima.fits
     assert not optima.is_settled
     assert not optima.is_exhausted
-    assert UNKNOWNS.site_std(optima.found[0].answer.covariance) > 0
+
+
+def test_little_noise_takes_two_starts_that_agree(linear):
+    """However wide the posterior is for what the data do not tell."""
+    quiet = replace(linear, variance=np.full(DATA, 1e-8), measurement=COLD)
+    optima = optima_of(replace(quiet, data=quiet.slope.sum(axis=0)))
+    for settled in (False, True):
+        optima.start_from(np.zeros(SIZE), 0, f"0.{optima.starts}")
+        assert optima.is_settled == settled
+    assert not optima.is_wide
