@@ -40,8 +40,8 @@ print("α =", float(guess["alpha"]), "meV nm")
 # %% [markdown]
 # ## The answer
 #
-# Rounds of simulation and regression start from the guess and its error, and Gauss–Newton steps
-# finish them. A second attempt starts from the disorder model's prior, and must agree.
+# Gauss–Newton steps start at the guess and at draws from its error, and must agree. If they do not,
+# rounds of simulation and regression bring the guess nearer.
 
 # %%
 inferred = dl.infer(measured, MODEL)  # with the noise that the file states

@@ -192,8 +192,8 @@ def test_an_interrupted_run_goes_on(measured, inferred, tmp_path):
     assert rounds[1][: len(rounds[0])] == rounds[0]  # … and leaves it there
     assert len(rounds[1]) == inferred.attrs["rounds"]
     stages = [step.stage for step in second]
-    assert stages[-1] == "Gauss–Newton"
-    assert second[-1].misfit < 1.5 * NOISE
+    assert stages[-2:] == ["Gauss–Newton", "maps"]
+    assert second[-1].misfit < 1.1 * NOISE
     spread = float(np.sqrt((inferred["potential_std"] ** 2).mean()))
     assert second[-1].spread == pytest.approx(spread, rel=0.1)
     assert result.identical(inferred)

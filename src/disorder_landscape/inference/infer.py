@@ -19,8 +19,10 @@ from disorder_landscape.arguments import (
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.invert import (
+    MAPS,
     InversionSettings,
     Progress,
+    Step,
     invert,
     silent,
     usable_network_features,
@@ -30,6 +32,7 @@ from disorder_landscape.inference.problem.measurement import measurement_of, set
 from disorder_landscape.inference.problem.observation import (
     Observation,
     noise_of_channels,
+    overall_misfit,
     stated_noise,
 )
 from disorder_landscape.inference.problem.prior import Prior
@@ -64,10 +67,10 @@ def infer(
 ) -> xr.Dataset:
     """Find the disorder that explains a measurement, with error bars and a verdict.
 
-    The network's guess, with its error at this noise, is where rounds of simulation and regression
-    start, or the prior. Gauss–Newton steps follow. Where the posterior is no normal distribution,
-    importance sampling finds it. An answer that may be wrong is not accepted before a second
-    attempt, from the prior, agrees.
+    Gauss–Newton steps start about the network's guess, as far away as it errs at this noise. If
+    they do not agree, or without a network, rounds of simulation and regression come nearer first.
+    Where the posterior is no normal distribution, importance sampling finds it. An answer that may
+    be wrong is not accepted before several starts agree.
 
     Parameters
     ----------
@@ -94,8 +97,8 @@ def infer(
         File through which an interrupted run goes on. It is not deleted, since the result is not
         saved.
     progress : callable, optional
-        Called with a `Step` after each round and each iteration of importance sampling, and before
-        each Gauss–Newton step.
+        Called with a `Step` after each round and each iteration of importance sampling, before each
+        Gauss–Newton step, and before the maps.
 
     Returns
     -------
@@ -130,6 +133,9 @@ def infer(
     fingerprint = _fingerprint(observation, trained, repr((seed, settings, start)))
     found_before = Checkpoint(checkpoint, fingerprint)
     found = invert(observation, trained, seed, settings, progress, found_before)
+    spread = observation.unknowns.site_std(found.answer.covariance)
+    misfit = overall_misfit(observation, found.best.data)
+    progress(Step(found.attempts - 1, MAPS, 0, misfit, spread))
     result = result_of(observation, found, samples, seed)
     result.attrs |= {
         "verdict": verdict(observation, found),

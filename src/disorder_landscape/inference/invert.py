@@ -1,7 +1,8 @@
-"""From one measurement to attempts at explaining it.
+"""From one measurement to the optima that explain it, and samples of the posterior.
 
-An attempt is a first guess, regression rounds, Gauss–Newton steps and, where the posterior is wide,
-importance sampling. There are attempts until the verdict is known.
+An attempt is a first guess, and Gauss–Newton steps from many starts about it, with regression
+rounds in between that bring it nearer. There are attempts until the verdict is known. Importance
+sampling follows where the posterior is wide.
 """
 
 from __future__ import annotations
@@ -63,7 +64,8 @@ posterior that is wider by 10 % in seven directions it is 0.86, by 20 % 0.47.)""
 NEGLIGIBLE = 1e-3
 """Optima with less than this share of the posterior are left out."""
 ROUND, GAUSS_NEWTON, IMPORTANCE_SAMPLING = "round", "Gauss–Newton", "importance sampling"
-"""The stages of an attempt."""
+MAPS = "maps"
+"""The stages of an inversion."""
 
 
 @dataclass(frozen=True)
@@ -83,7 +85,7 @@ class Step(NamedTuple):
 
     attempt: int
     stage: str
-    """One of ROUND, GAUSS_NEWTON and IMPORTANCE_SAMPLING."""
+    """One of ROUND, GAUSS_NEWTON, IMPORTANCE_SAMPLING and MAPS."""
     number: int
     misfit: float
     """Root mean square in e²/h."""
@@ -92,8 +94,8 @@ class Step(NamedTuple):
 
 
 Progress = Callable[[Step], None]
-"""A progress callback: called after each round and each iteration of importance sampling, and
-before each Gauss–Newton step."""
+"""A progress callback: called after each round and each iteration of importance sampling, before
+each Gauss–Newton step, and before the maps of a result."""
 
 
 def silent(step: Step) -> None:

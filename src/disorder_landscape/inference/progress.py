@@ -11,6 +11,7 @@ from disorder_landscape.estimates import announce_repeated
 from disorder_landscape.inference.invert import (
     GAUSS_NEWTON,
     IMPORTANCE_SAMPLING,
+    MAPS,
     ROUND,
     Progress,
     Step,
@@ -18,14 +19,13 @@ from disorder_landscape.inference.invert import (
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.verdict import is_surely_right
 
-USUAL_STEPS = {ROUND: 4, GAUSS_NEWTON: 3, IMPORTANCE_SAMPLING: 4}
-"""How many most attempts from a guess take, of about one length: what the time left is estimated
-from."""
+USUAL_STEPS = {ROUND: 4, GAUSS_NEWTON: 8, IMPORTANCE_SAMPLING: 3, MAPS: 1}
+"""How many most inversions take, of about one length: what the time left is estimated from."""
 
-WIRES_PER_UNKNOWN = 35, 130
+WIRES_PER_UNKNOWN = 12, 60
 """How many times all data of a wire are simulated for each unknown: where an answer that fits is
-surely right, and where a second attempt must agree. Means of inversions of 5+1 and ten components
-with noise up to 0.05 e²/h, within a third."""
+surely right, and otherwise. Means of inversions of 5+1 and ten components with noise of 0.001 and
+of 0.01 e²/h; single ones take a third to twice that. With 0.05 e²/h they take twice that, too."""
 
 
 def announce_inference(observation: Observation) -> None:
