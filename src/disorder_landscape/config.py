@@ -247,7 +247,7 @@ def checked(
         missing or invalid key.
     """
     try:
-        return model.model_validate(_read_toml(path, name) if content is None else content)
+        return model.model_validate(read_toml(path, name) if content is None else content)
     except ValidationError as error:
         first = error.errors()[0]
         # The tag of a union is no key.
@@ -262,7 +262,20 @@ def checked(
         raise ArgumentError(name, f"be right ('{path}')", but) from None
 
 
-def _read_toml(path: str | Path, name: str) -> dict[str, object]:
+def read_toml(path: str | Path, name: str) -> dict[str, object]:
+    """Return what a TOML file holds.
+
+    Parameters
+    ----------
+    path : str or Path
+    name : str
+        Of the argument, for the error.
+
+    Raises
+    ------
+    ArgumentError
+        If it cannot be read, or is none.
+    """
     try:
         with open(path, "rb") as file:
             return tomllib.load(file)

@@ -134,7 +134,7 @@ def test_what_is_no_prior_is_refused_in_one_sentence(prior, says):
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("g = [20", "prior must be a TOML file .* is none"),
+        ("g = [20", "prior must be a TOML file, .* is not: "),
         ("G = 20", "prior must say something of components, .* of 'G'"),
         ("[g]\nmean = 25\nwidth = 1", "g must be a number, a pair"),
         (None, "cannot be read"),

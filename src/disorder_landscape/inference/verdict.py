@@ -46,7 +46,7 @@ def verdict(observation: Observation, outcome: Outcome) -> str:
 
 
 def is_surely_right(observation: Observation) -> bool:
-    """Return whether the noise is so small that an answer that fits needs no second attempt."""
+    """Return whether the noise is so small that an answer that fits needs no other start."""
     count = observation.data.size
     hidden = TOLERATED * np.sqrt(2 / count) * observation.variance.mean()
     return bool(hidden < WRONG_MISFIT**2 and count >= FEW_DATA * len(observation.unknowns.names))

@@ -145,9 +145,7 @@ def inverted(observation: Observation, network: TrainedModel | None, seed: int) 
     drawn = found.importance_samples
     outcome: dict[str, object] = {
         "spread": observation.unknowns.site_std(found.answer.covariance),
-        "effective_sample_size": np.nan
-        if drawn is None
-        else drawn.effective_sample_size,
+        "effective_sample_size": np.nan if drawn is None else drawn.effective_sample_size,
         "excess": found.best.excess,
         "verdict": verdict(observation, found),
         "attempts": found.attempts,

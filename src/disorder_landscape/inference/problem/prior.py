@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
@@ -11,13 +10,12 @@ from typing import Any, Self
 import numpy as np
 
 from disorder_landscape.arguments import (
-    ArgumentError,
     number_in,
     require,
     shown,
     whole_number_in,
 )
-from disorder_landscape.config import DatasetConfig
+from disorder_landscape.config import DatasetConfig, read_toml
 from disorder_landscape.inference.problem.distributions import (
     Belief,
     Distribution,
@@ -243,15 +241,7 @@ class Prior:
         ArgumentError
             As for a prior, or if the file cannot be read.
         """
-        must = "be a TOML file of what is known of a device"
-        try:
-            text = Path(path).read_text(encoding="utf-8")
-            return cls.from_mapping(tomllib.loads(text))
-        except OSError as error:
-            but = f"'{path}' cannot be read ({error.strerror})"
-            raise ArgumentError("prior", must, but) from None
-        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-            raise ArgumentError("prior", must, f"'{path}' is none ({error})") from None
+        return cls.from_mapping(read_toml(path, "prior"))
 
 
 def _range(name: str) -> tuple[float, float, str]:
