@@ -159,9 +159,6 @@ def device_row(task: Task, group: Devices) -> dict[str, object]:
     found, unknowns = inverted(observation, None, task.index), group.unknowns
     mean, covariance = found.answer.mean, found.answer.covariance
     off = unknowns.potential(mean) - device.wire.potential
-    n, L = unknowns.of_disorder, unknowns.to_potential
-    L = L - L.mean(axis=0)
-    shape_variance = np.einsum("si,ij,sj->s", L, covariance[:n, :n], L).mean()
     std = np.sqrt(np.diag(covariance))
     row: dict[str, object] = {
         "name": task.name,
@@ -170,7 +167,7 @@ def device_row(task: Task, group: Devices) -> dict[str, object]:
         "site_error": np.sqrt((off**2).mean()),
         "spread": found.outcome["spread"],
         "shape_error": off.std(),
-        "shape_spread": np.sqrt(shape_variance),
+        "shape_spread": unknowns.shape_std(covariance),
         "mahalanobis": found.answer.squared_distance(truth),
     }
     return {

@@ -187,6 +187,12 @@ class Unknowns:
         variance = np.einsum("si,ij,sj->s", L, covariance[:n, :n], L)
         return np.asarray(np.sqrt(np.maximum(variance, 0.0)))
 
+    def shape_std(self, covariance: FloatArray) -> float:
+        """Return `site_std` of V less its mean over the sites, in meV."""
+        n, L = self.of_disorder, self.to_potential - self.to_potential.mean(axis=0)
+        mean_square = np.einsum("si,ij,sj->s", L, covariance[:n, :n], L).mean()
+        return float(np.sqrt(max(0.0, mean_square)))
+
     def site_distance(self, x: FloatArray, other: FloatArray) -> float:
         """Return the root-mean-square difference of two potentials in meV."""
         return self.site_std(np.outer(x - other, x - other))
