@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from disorder_landscape.inference.checkpoint import Checkpoint
-from disorder_landscape.inference.invert import posterior_samples
 from disorder_landscape.inference.optimum import Optimum, optimum_at
 from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.posterior.importance_sampling import (
@@ -18,6 +17,7 @@ from disorder_landscape.inference.posterior.importance_sampling import (
     tempered,
     widened,
 )
+from disorder_landscape.inference.posterior.samples import posterior_samples
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.unknowns import unknowns_of
 from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED, verdict
