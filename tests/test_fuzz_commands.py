@@ -42,7 +42,7 @@ from test_fuzz_functions import (
     MODEL,
     PREDICTION,
     FirstNumbers,
-    one_attempt,
+    one_optimum,
 )
 
 TEXTS = ["", " ", "x", "nan", "inf", "-inf", "1e400", "-1", "0", "1", "2", "3.5", "1e-320"]
@@ -118,7 +118,7 @@ def cheap(monkeypatch, trained_folder):
     def network(path, compiled=False):
         return FirstNumbers()
 
-    monkeypatch.setattr(disorder_landscape.inference.infer, "invert", one_attempt)
+    monkeypatch.setattr(disorder_landscape.inference.infer, "invert", one_optimum)
     monkeypatch.setattr(disorder_landscape.learning.model, "load_network", network)
     monkeypatch.setattr(disorder_landscape.learning.training, "_train_one", end)
     monkeypatch.setattr(disorder_landscape.bench.report, "measure", end)
