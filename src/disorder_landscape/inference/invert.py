@@ -119,7 +119,7 @@ def invert(
         more = _with_more_samples(settings, number)
         rounds = regression_rounds(observation, start, [seed, number], more, cache, features)
         count += _search(optima, start, rounds, seed, number, progress)
-        if optima.is_settled or optima.is_exhausted:
+        if optima.is_done:
             break
     report = partial(_report, progress, number, IMPORTANCE_SAMPLING)
     drawn = posterior_samples(observation, optima.found, [seed, 2**31 + 2], cache, report)
@@ -131,12 +131,13 @@ def _steps(
     progress: Progress,
     observation: Observation,
     x: FloatArray,
+    attempt: int,
     name: str,
     known: Sequence[Optimum],
     roughly: bool,
 ) -> Gaussian:
     """Return where Gauss–Newton steps from x (unknown,) end."""
-    report = partial(_report, progress, int(name.split(".")[0]), GAUSS_NEWTON)
+    report = partial(_report, progress, attempt, GAUSS_NEWTON)
     make = partial(gauss_newton, observation, x, report, known, roughly)
     return _cached_gaussian(cache, f"gauss_newton.{name}", make)
 
@@ -157,11 +158,11 @@ def _search(
         if spread < next_try:
             next_try = spread / 2
             _start_about(optima, found, np.random.default_rng([seed, number, count, 2]), number)
-            if optima.is_settled or optima.is_exhausted:
+            if optima.is_done:
                 return count
         one = next(rounds, None)
         if one is None:
-            optima.end_at(found.mean, number, f"{number}.last")
+            optima.end_at(found.mean, number)
             return count
         progress(Step(number, ROUND, count, one.misfit, one.spread))
         found, count, spread = one.distribution, count + 1, one.spread
@@ -171,16 +172,15 @@ def _start_about(optima: Optima, found: Gaussian, rng: np.random.Generator, numb
     """Let steps start at the mean of a distribution, and at draws from it."""
     few, more = STARTS
     tried = 0
-    while not optima.is_settled and not optima.is_exhausted:
-        if tried >= few and not optima.fits:
-            return
-        if tried >= more and optima.fits and not optima.is_wide:
+    while not optima.is_done:
+        fits = optima.fits
+        if tried >= (more if fits else few) and not (fits and optima.is_wide):
             return
         about = found
-        if optima.fits and is_surely_right(optima.observation):
+        if fits and is_surely_right(optima.observation):
             about = Gaussian(best(optima.found).answer.mean, NEARBY**2 * found.covariance)
         x = found.mean if tried == 0 else about.draw(rng, 2)[0]
-        optima.start_from(x, number, f"{number}.{optima.starts}")
+        optima.start_from(x, number)
         tried += 1
 
 

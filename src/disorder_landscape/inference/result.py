@@ -34,7 +34,8 @@ HERMITE = 61
 def result_of(observation: Observation, outcome: Outcome, samples: int, seed: int) -> xr.Dataset:
     """Return the dataset of `infer`, but for the attributes that tell how it was found."""
     m, unknowns = observation.measurement, observation.unknowns
-    mean, covariance = outcome.answer.mean, outcome.answer.covariance
+    answer = outcome.answer
+    mean, covariance = answer.mean, answer.covariance
     X = outcome.draw(np.random.default_rng([seed, 2**31 + 1]), samples)
     maps = _maps(m.mu, m.B)
     T_IV = _visibility(observation, np.concatenate([mean[None], X]), maps)

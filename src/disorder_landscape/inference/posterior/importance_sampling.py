@@ -50,8 +50,10 @@ WIDER = 1.2
 """Proposals have this many times the standard deviation of the weighted samples, or of an
 answer."""
 LEAST_PART = 0.1
-"""Each normal distribution of a mixture gets this part of an equal share of the samples at
-least."""
+"""Each normal distribution of a mixture gets this part of an equal share of the samples at least.
+…"""
+LEAST_SAMPLES = 0.25
+"""… It stays as it is if it is responsible for less than this much of one of the samples."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,9 +83,15 @@ class ImportanceSamples:
     @property
     def moments(self) -> Gaussian:
         """The normal distribution of the same mean and covariance."""
+        own = self.uncorrected_moments
+        return Gaussian(own.mean, own.covariance / (1 - 1 / self.effective_sample_size))
+
+    @property
+    def uncorrected_moments(self) -> Gaussian:
+        """The same without the correction for the finite number of samples."""
         mean = self.weight @ self.samples
         off = self.samples - mean
-        covariance = (off.T * self.weight) @ off / (1 - 1 / self.effective_sample_size)
+        covariance = (off.T * self.weight) @ off
         return Gaussian(mean, (covariance + covariance.T) / 2)
 
     def draw(self, rng: np.random.Generator, count: int) -> FloatArray:
@@ -160,16 +168,13 @@ def fitted(mixture: Sequence[Part], found: ImportanceSamples) -> list[Part]:
     parts = []
     for part, weight in zip(mixture, responsible, strict=True):
         share = weight.sum()
-        if share < LEAST_SHARE / len(X):
+        if share < LEAST_SAMPLES / len(X):
             parts.append(Part(part.proposal, share))
             continue
         own = ImportanceSamples(X, weight / share)
-        few, many = size, own.effective_sample_size
-        mean = weight @ X / share
-        off = X - mean
-        covariance = (off.T * weight) @ off / share
-        mixed = (many * WIDER**2 * covariance + few * part.proposal.covariance) / (many + few)
-        parts.append(Part(Gaussian(mean, (mixed + mixed.T) / 2), share))
+        few, many, new = size, own.effective_sample_size, widened(own.uncorrected_moments)
+        covariance = (many * new.covariance + few * part.proposal.covariance) / (many + few)
+        parts.append(Part(Gaussian(new.mean, covariance), share))
     return parts
 
 

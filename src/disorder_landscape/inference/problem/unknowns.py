@@ -183,15 +183,19 @@ class Unknowns:
 
     def potential_std(self, covariance: FloatArray) -> FloatArray:
         """Return the standard deviation of V on each site in meV, shape (site,)."""
-        n, L = self.of_disorder, self.to_potential
-        variance = np.einsum("si,ij,sj->s", L, covariance[:n, :n], L)
+        variance = self._variance(self.to_potential, covariance)
         return np.asarray(np.sqrt(np.maximum(variance, 0.0)))
 
     def shape_std(self, covariance: FloatArray) -> float:
         """Return `site_std` of V less its mean over the sites, in meV."""
-        n, L = self.of_disorder, self.to_potential - self.to_potential.mean(axis=0)
-        mean_square = np.einsum("si,ij,sj->s", L, covariance[:n, :n], L).mean()
+        L = self.to_potential
+        mean_square = self._variance(L - L.mean(axis=0), covariance).mean()
         return float(np.sqrt(max(0.0, mean_square)))
+
+    def _variance(self, L: FloatArray, covariance: FloatArray) -> FloatArray:
+        """Return the variance of Lξ, shape (site,)."""
+        n = self.of_disorder
+        return np.asarray(np.einsum("si,ij,sj->s", L, covariance[:n, :n], L))
 
     def site_distance(self, x: FloatArray, other: FloatArray) -> float:
         """Return the root-mean-square difference of two potentials in meV."""

@@ -133,7 +133,7 @@ def linearise(observation: Observation, x: FloatArray) -> tuple[FloatArray, Floa
     exact = observation.exact_slopes(x)
     if exact is None:
         return _differences(observation, x)
-    y, slope = exact.data.copy(), exact.slope.copy()
+    y, slope = exact.data, exact.slope
     for mu, B in np.argwhere(exact.doubtful):
         of_set, at = observation.of_set(mu, B)
         if at.size:

@@ -35,9 +35,9 @@ this many kT. …"""
 STARTS_WHEN_WIDE = 8, 16
 """… Then there are at least, and at most, so many starts."""
 
-Steps = Callable[[Observation, FloatArray, str, Sequence[Optimum], bool], Gaussian]
-"""Gauss–Newton steps of an observation, from a start, by a name, which may end at known optima, and
-whether only roughly."""
+Steps = Callable[[Observation, FloatArray, int, str, Sequence[Optimum], bool], Gaussian]
+"""Gauss–Newton steps of an observation, from a start, in an attempt, by a name, which may end at
+known optima, and whether only roughly."""
 
 
 @dataclass(eq=False)
@@ -87,29 +87,38 @@ class Optima:
         """Whether there have been as many starts as are worth their time."""
         return self.fits and self.is_wide and self.starts >= STARTS_WHEN_WIDE[1]
 
-    def start_from(self, x: FloatArray, attempt: int, name: str) -> None:
+    @property
+    def is_done(self) -> bool:
+        """Whether no more starts are needed, or worth their time."""
+        return self.is_settled or self.is_exhausted
+
+    def start_from(self, x: FloatArray, attempt: int) -> None:
         """Find the optimum that steps from x (unknown,) lead to."""
-        self.starts += 1
+        name = self._next_name(attempt)
         known = [one for one, _ in self._on_some]
-        end = self.steps(self.some, x, f"{name}.some", known, True)
-        near = optimum_at(self.some, end, attempt)
+        end = self.steps(self.some, x, attempt, f"{name}.some", known, True)
         for one, leads_to in self._on_some:
             if is_near(one, end.mean):
                 self._found_again(leads_to, attempt)
                 return
+        near = optimum_at(self.some, end, attempt)
         least = best([*known, near]).objective
         leave = not near.fits or near.objective > least + REACH
         to = None if leave else self._optimum_from(end.mean, attempt, name)
         self._on_some.append((near, to))
 
-    def end_at(self, x: FloatArray, attempt: int, name: str) -> None:
+    def end_at(self, x: FloatArray, attempt: int) -> None:
         """Find the optimum that steps from x (unknown,) with all data lead to."""
+        self._optimum_from(x, attempt, self._next_name(attempt))
+
+    def _next_name(self, attempt: int) -> str:
+        """Count a start, and return its name."""
         self.starts += 1
-        self._optimum_from(x, attempt, name)
+        return f"{attempt}.{self.starts - 1}"
 
     def _optimum_from(self, x: FloatArray, attempt: int, name: str) -> int:
         """Return which optimum of all data steps lead to."""
-        end = self.steps(self.observation, x, name, self.found, False)
+        end = self.steps(self.observation, x, attempt, name, self.found, False)
         new = optimum_at(self.observation, end, attempt)
         for k, one in enumerate(self.found):
             if same_answer(self.observation, one, new):
