@@ -154,6 +154,9 @@ def test_mixtures_are_fitted_to_samples():
     np.testing.assert_allclose(second.proposal.covariance, 0.36 * unit, atol=0.05)
     assert far.share < 1e-9
     np.testing.assert_array_equal(far.proposal.covariance, unit)
+    again = fitted([first, second, far], samples)  # whose share of none of them is no warning
+    assert again[2].share < 1e-9
+    assert again[0].share == pytest.approx(0.75, abs=0.01)
 
 
 @pytest.mark.parametrize(("kT", "wide"), [(4.2, False), (3.8, True), (0.5, True)])

@@ -163,18 +163,20 @@ def fitted(mixture: Sequence[Part], found: ImportanceSamples) -> list[Part]:
     A part's covariance is mixed with what it was, the more so the fewer samples it has.
     """
     X, size = found.samples, found.samples.shape[1]
-    log = np.array([np.log(part.share) + log_density(part.proposal, X) for part in mixture])
+    share = np.maximum([part.share for part in mixture], np.finfo(float).tiny)
+    density = np.array([log_density(part.proposal, X) for part in mixture])
+    log = np.log(share)[:, None] + density
     responsible = found.weight * softmax(log, axis=0)
     parts = []
     for part, weight in zip(mixture, responsible, strict=True):
-        share = weight.sum()
-        if share < LEAST_SAMPLES / len(X):
-            parts.append(Part(part.proposal, share))
+        own_share = weight.sum()
+        if own_share < LEAST_SAMPLES / len(X):
+            parts.append(Part(part.proposal, own_share))
             continue
-        own = ImportanceSamples(X, weight / share)
+        own = ImportanceSamples(X, weight / own_share)
         few, many, new = size, own.effective_sample_size, widened(own.uncorrected_moments)
         covariance = (many * new.covariance + few * part.proposal.covariance) / (many + few)
-        parts.append(Part(Gaussian(new.mean, covariance), share))
+        parts.append(Part(Gaussian(new.mean, covariance), own_share))
     return parts
 
 
