@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from scipy.stats import kstest, norm, uniform
@@ -198,16 +198,22 @@ def test_gate_voltages_become_chemical_potentials():
 
 @settings(max_examples=20, deadline=None)
 @given(seed=st.integers(0, 1000))
+@example(seed=280)
 def test_slopes_are_those_of_the_simulation(seed):
-    """By all parameters at once, at random devices."""
+    """By all parameters at once, at random devices.
+
+    The differences are over 3e-4: over 1e-4 the simulation's own error makes those of three devices
+    in 328 differ by more than what is allowed, over 3e-4 and 1e-3 none.
+    """
     o = observation()
     x = 0.7 * np.random.default_rng(seed).normal(size=len(o.unknowns.names))
     data, slopes = linearise(o, x)
-    step = 1e-4 * np.eye(x.size)
+    width = 3e-4
+    step = width * np.eye(x.size)
     around = o.simulate(np.concatenate([[x], x + step, x - step]))
     up, down = np.split(around[1:], 2)
     assert_allclose(data, around[0], atol=2e-4)
-    error = abs((up - down) / 2e-4 - slopes).max(axis=1)
+    error = abs((up - down) / (2 * width) - slopes).max(axis=1)
     assert (error < 0.02 * abs(slopes).max() + 0.02).all()  # as the simulation's own error makes it
 
 
