@@ -9,7 +9,9 @@ from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.optimum import Optimum, optimum_at
 from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.posterior.importance_sampling import (
+    AT_A_TIME,
     ENOUGH,
+    FIRST,
     ImportanceSamples,
     Part,
     fitted,
@@ -17,8 +19,12 @@ from disorder_landscape.inference.posterior.importance_sampling import (
     tempered,
     widened,
 )
-from disorder_landscape.inference.posterior.samples import posterior_samples
-from disorder_landscape.inference.problem.gaussian import Gaussian
+from disorder_landscape.inference.posterior.samples import (
+    first_proposal,
+    normality,
+    posterior_samples,
+)
+from disorder_landscape.inference.problem.gaussian import Gaussian, log_density
 from disorder_landscape.inference.problem.unknowns import unknowns_of
 from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED, verdict
 from disorder_landscape.model.parameters import BOLTZMANN
@@ -48,12 +54,12 @@ def test_samples_have_the_posteriors_moments(lines):
     scale = np.sqrt(np.diag(exact.covariance))
     far = Gaussian(exact.mean + 3 * scale, 9 * exact.covariance)
     steps = []
-    found = importance_sampling(
+    *_, found = importance_sampling(
         lines, [Part(far, 1.0)], [0], progress=lambda *step: steps.append(step)
     )
     assert [number for number, _, _ in steps] == list(range(len(steps)))
     assert found.effective_sample_size >= ENOUGH
-    assert found.samples.shape == (128 * len(steps), SIZE)
+    assert found.samples.shape[0] <= FIRST + AT_A_TIME * (len(steps) - 1)
     assert abs((found.moments.mean - exact.mean) / scale).max() < 0.3
     ratio = np.linalg.eigvals(np.linalg.solve(exact.covariance, found.moments.covariance))
     assert 0.5 < ratio.real.min() <= ratio.real.max() < 1.7
@@ -70,7 +76,8 @@ def test_importance_samples_are_not_too_narrow():
     too_wide = Gaussian(exact.mean, 1.4**2 * exact.covariance)
     ratio = []
     for seed in range(40):
-        found = importance_sampling(many, [Part(too_wide, 0.5), Part(widened(exact), 0.5)], [seed])
+        mixture = [Part(too_wide, 0.5), Part(widened(exact, 1.2), 0.5)]
+        *_, found = importance_sampling(many, mixture, [seed])
         n, off = found.effective_sample_size, found.moments.mean - exact.mean
         second_moment = exact.covariance + np.outer(off, off)
         square = np.trace(np.linalg.solve(found.moments.covariance, second_moment))
@@ -84,7 +91,7 @@ def test_both_valleys_have_their_share():
     about = [
         Part(Gaussian(at, 0.05 * PRIOR.covariance), 0.5) for at in (truth, 2 * PRIOR.mean - truth)
     ]
-    found = importance_sampling(folds, about, [0])
+    *_, found = importance_sampling(folds, about, [0])
     side = (found.samples - PRIOR.mean) @ (truth - PRIOR.mean) > 0
     assert 0.35 < found.weight[side].sum() < 0.65
     assert found.moments.squared_distance(truth) < 3 * SIZE
@@ -114,6 +121,23 @@ def test_samples_are_enough_by_their_effective_size():
     assert not replace(even, weight=one).is_enough
 
 
+def test_as_many_samples_are_missing_as_promise_to_be_enough():
+    weight = np.repeat([1 / 32, 0.0], [32, 32])
+    found = ImportanceSamples(np.zeros((64, SIZE)), weight)
+    assert found.missing == 136  # half of 64 are effective, and 100 are needed
+
+
+@pytest.mark.parametrize(("times_wider", "expected"), [(1.0, 1.0), (1.1, 0.86), (1.2, 0.47)])
+def test_normality_is_the_share_of_laplaces_samples_that_is_effective(times_wider, expected):
+    """Of normal posteriors of seven directions."""
+    answer = Gaussian(np.zeros(7), np.eye(7))
+    X = first_proposal(answer).draw(np.random.default_rng(4), 20_000)
+    log_weight = log_density(widened(answer, times_wider), X)
+    found = tempered(X, log_weight - log_density(first_proposal(answer), X), 0.0)
+    assert normality(found, answer) == pytest.approx(expected, abs=0.05)
+    assert normality(replace(found, power=0.5), answer) == 0
+
+
 def test_samples_are_drawn_as_often_as_they_weigh():
     X = np.arange(4.0)[:, None]
     drawn = ImportanceSamples(X, np.array([0.5, 0.25, 0.25, 0.0])).draw(RNG, 400)
@@ -123,7 +147,7 @@ def test_samples_are_drawn_as_often_as_they_weigh():
 def test_interrupted_importance_sampling_goes_on(lines, tmp_path):
     start = Gaussian(PRIOR.mean, PRIOR.covariance)
     path = tmp_path / "unfinished.json"
-    first = importance_sampling(lines, [Part(start, 1.0)], [0], Checkpoint(path).cached)
+    *_, first = importance_sampling(lines, [Part(start, 1.0)], [0], Checkpoint(path).cached)
     again = Checkpoint(path)
     assert len(again) > 0
 
@@ -132,7 +156,7 @@ def test_interrupted_importance_sampling_goes_on(lines, tmp_path):
 
     unavailable = replace(lines)
     unavailable.simulate = fail
-    second = importance_sampling(unavailable, [Part(start, 1.0)], [0], again.cached)
+    *_, second = importance_sampling(unavailable, [Part(start, 1.0)], [0], again.cached)
     np.testing.assert_array_equal(first.weight, second.weight)
     np.testing.assert_array_equal(first.samples, second.samples)
 
