@@ -62,13 +62,13 @@ def test_steps_that_creep_end_where_only_a_place_is_asked_for():
 
     gorge = Gorge(200 * np.eye(40)[0], np.empty(0), variance=np.full(40, 0.1**2))
     steps = {}
-    for roughly in (False, True):
+    for goal in ("optimum", "place"):
         count = []
-        gauss_newton(gorge, np.zeros(SIZE), lambda *step, c=count: c.append(step[1]), (), roughly)
-        steps[roughly] = count
-    rough = steps[True]
-    assert len(rough) == LATELY < len(steps[False])
-    assert rough == steps[False][: len(rough)]
+        gauss_newton(gorge, np.zeros(SIZE), lambda *step, c=count: c.append(step[1]), (), goal)
+        steps[goal] = count
+    rough = steps["place"]
+    assert len(rough) == LATELY < len(steps["optimum"])
+    assert rough == steps["optimum"][: len(rough)]
     assert rough[-1] ** 2 > CREEPING * rough[0] ** 2
 
 

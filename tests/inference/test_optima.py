@@ -32,7 +32,7 @@ def folds():
 
 
 def optima_of(observation, **options):
-    def steps(of, x, attempt, name, known, roughly):
+    def steps(of, x, attempt, name, known, goal):
         return gauss_newton(of, x, known=known)
 
     return Optima(observation, observation, steps, **options)
@@ -78,15 +78,15 @@ def test_starts_far_above_the_best_are_left_with_some_of_the_data(folds):
     """What they would lead to with all data is not asked."""
     asked = []
 
-    def steps(of, x, attempt, name, known, roughly):
-        asked.append((name, roughly))
+    def steps(of, x, attempt, name, known, goal):
+        asked.append((name, goal))
         covariance = 0.01 * np.eye(SIZE)
         return Gaussian(x, covariance)
 
     optima = Optima(folds, folds, steps)
     optima.start_from(2 * AXIS, 0)
     optima.start_from(40 * AXIS, 0)
-    assert asked == [("0.0.some", True), ("0.0", False), ("0.1.some", True)]
+    assert asked == [("0.0.some", "place"), ("0.0", "optimum"), ("0.1.some", "place")]
     assert len(optima.found) == 1
     optima.start_from(40 * AXIS, 0)  # again
     assert len(optima.found) == 1

@@ -20,11 +20,12 @@ from linear_data import SIZE, Linear
 def test_excess_looks_at_each_channel():
     class Channels:
         channel = np.repeat(np.arange(4), 100)
+        variance, data = np.full(400, 0.01**2), np.zeros(400)
 
-    squares = np.ones(400)
-    assert chi_square_excess(Channels, squares) == pytest.approx(0.0)
-    squares[:100] = 2.0  # one channel is off
-    assert chi_square_excess(Channels, squares) == pytest.approx(100 / np.sqrt(200))
+    simulated = np.full(400, 0.01)
+    assert chi_square_excess(Channels, simulated) == pytest.approx(0.0)
+    simulated[:100] *= np.sqrt(2.0)  # one channel is off
+    assert chi_square_excess(Channels, simulated) == pytest.approx(100 / np.sqrt(200))
 
 
 @pytest.mark.parametrize(

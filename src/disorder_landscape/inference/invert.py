@@ -21,15 +21,16 @@ from disorder_landscape.inference.posterior.samples import posterior_samples
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.search.first_guess import network_guess
-from disorder_landscape.inference.search.gauss_newton import gauss_newton
+from disorder_landscape.inference.search.gauss_newton import Goal, gauss_newton
 from disorder_landscape.inference.search.network_features import NetworkFeatures, network_features
-from disorder_landscape.inference.search.optima import SHARE, Optima
+from disorder_landscape.inference.search.optima import SHARE, Optima, Steps
 from disorder_landscape.inference.search.regression_rounds import (
     WITH_NETWORK_FEATURES,
     Round,
     RoundSettings,
     regression_rounds,
 )
+from disorder_landscape.inference.search.whole_landscape import optima_of_whole_landscape
 from disorder_landscape.inference.verdict import is_surely_right
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.model.parameters import FloatArray
@@ -105,14 +106,36 @@ def invert(
         What an interrupted run has found.
     """
     cache = (checkpoint if checkpoint is not None else Checkpoint()).cached
+    steps = partial(_steps, cache, progress)
+    rounds = 0
+    if observation.unknowns.is_whole_landscape:
+        optima, attempts = optima_of_whole_landscape(observation, steps, seed)
+    else:
+        usual = usual_settings(usable_network_features(model, observation))
+        found = _optima(observation, model, steps, seed, settings or usual, progress, cache)
+        optima, attempts, rounds = found
+    report = partial(_report, progress, attempts - 1, IMPORTANCE_SAMPLING)
+    drawn = posterior_samples(observation, optima.found, [seed, 2**31 + 2], cache, report)
+    return Outcome(optima.found, drawn, attempts, rounds)
+
+
+def _optima(
+    observation: Observation,
+    model: TrainedModel | None,
+    steps: Steps,
+    seed: int,
+    settings: InversionSettings,
+    progress: Progress,
+    cache: Cache,
+) -> tuple[Optima, int, int]:
+    """Return optima of few unknowns, and how many attempts and rounds they have taken."""
     features = usable_network_features(model, observation)
-    settings = settings or usual_settings(features)
     prior, guess = observation.unknowns.prior, None
     if model is not None:
         rng = np.random.default_rng([seed, 2**31])
         guess = _cached_gaussian(cache, "guess", partial(network_guess, model, observation, rng))
     some = observation.on_some_lines(SHARE, np.random.default_rng([seed, 2**31 + 3]))
-    optima = Optima(observation, some, partial(_steps, cache, progress))
+    optima = Optima(observation, some, steps)
     count = 0
     for number in range(settings.attempts):
         start = guess if guess is not None and number == 0 else prior
@@ -121,9 +144,7 @@ def invert(
         count += _search(optima, start, rounds, seed, number, progress)
         if optima.is_done:
             break
-    report = partial(_report, progress, number, IMPORTANCE_SAMPLING)
-    drawn = posterior_samples(observation, optima.found, [seed, 2**31 + 2], cache, report)
-    return Outcome(optima.found, drawn, number + 1, count)
+    return optima, number + 1, count
 
 
 def _steps(
@@ -134,11 +155,11 @@ def _steps(
     attempt: int,
     name: str,
     known: Sequence[Optimum],
-    roughly: bool,
+    goal: Goal,
 ) -> Gaussian:
     """Return where Gauss–Newton steps from x (unknown,) end."""
     report = partial(_report, progress, attempt, GAUSS_NEWTON)
-    make = partial(gauss_newton, observation, x, report, known, roughly)
+    make = partial(gauss_newton, observation, x, report, known, goal)
     return _cached_gaussian(cache, f"gauss_newton.{name}", make)
 
 

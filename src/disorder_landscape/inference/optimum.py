@@ -53,20 +53,25 @@ class Optimum:
 def optimum_at(observation: Observation, answer: Gaussian, attempt: int = 0) -> Optimum:
     """Return the optimum where a start of an attempt has ended."""
     data = observation.simulate(answer.mean[None])[0]
-    squares = squared_misfits(observation, data)
     height = float(objective(observation, answer.mean, data))
-    return Optimum(answer, data, height, chi_square_excess(observation, squares), (attempt,))
+    return Optimum(answer, data, height, chi_square_excess(observation, data), (attempt,))
 
 
-def chi_square_excess(observation: Observation, squares: FloatArray) -> float:
+def fits(observation: Observation, data: FloatArray) -> bool:
+    """Return whether the noise explains the misfit of simulated data (datum,)."""
+    return chi_square_excess(observation, data) <= TOLERATED
+
+
+def chi_square_excess(observation: Observation, data: FloatArray) -> float:
     """Return (χ² − its mean) / its standard deviation, the largest over all data and each channel.
 
     Parameters
     ----------
     observation : Observation
-    squares : array, shape (datum,)
-        Squared misfits in units of the errors' variance.
+    data : array, shape (datum,)
+        Simulated.
     """
+    squares = squared_misfits(observation, data)
     sets = [np.ones(squares.size, dtype=bool)]
     sets += [observation.channel == c for c in np.unique(observation.channel)]
     return max(float((squares[s].sum() - s.sum()) / np.sqrt(2 * s.sum())) for s in sets)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -91,6 +91,18 @@ class Observation:
         )
         part = self.at(mu, B, np.arange(m.bias.size))
         return part if part.data.size >= share * self.data.size / 2 else self
+
+    def on_highest_lines(self, shares: Sequence[float]) -> list[Observation]:
+        """Return observations of these shares of the measured lines of μ, the highest ones.
+
+        Those that are the same are left out, and empty ones.
+        """
+        m = self.measurement
+        measured = np.flatnonzero(self.is_measured.any(axis=(1, 2, 3)))
+        upwards = measured[np.argsort(m.mu[measured])]
+        counts = sorted({max(1, round(share * upwards.size)) for share in shares})
+        B, bias = np.arange(m.B.size), np.arange(m.bias.size)
+        return [self.at(np.sort(upwards[-count:]), B, bias) for count in counts]
 
     def at(
         self, mu: NDArray[np.int64], B: NDArray[np.int64], bias: NDArray[np.int64]

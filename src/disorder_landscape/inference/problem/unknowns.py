@@ -84,6 +84,11 @@ class Unknowns:
         """How many of the unknowns are the disorder's."""
         return int(self.to_potential.shape[1])
 
+    @property
+    def is_whole_landscape(self) -> bool:
+        """Whether V of every site is unknown, and not a number of components."""
+        return self.given.components is None
+
     @cached_property
     def parameters(self) -> dict[str, Distribution]:
         """The parameters that are unknown, by name."""
@@ -93,7 +98,7 @@ class Unknowns:
     def names(self) -> tuple[str, ...]:
         """One name each: c_1 …, mean, and the parameters; of a whole landscape V_1 … first."""
         n = self.of_disorder
-        if self.given.components is None:
+        if self.is_whole_landscape:
             disorder = tuple(f"V_{k}" for k in range(1, n + 1))
         else:
             disorder = (*(f"c_{k}" for k in range(1, n)), "mean")
@@ -257,7 +262,7 @@ class Unknowns:
     ) -> FloatArray:
         """Return the unknowns of a device that is known, shape (unknown,)."""
         unknown = {name: x for name, x in parameters.items() if name in self.parameters}
-        if self.given.components is not None:
+        if not self.is_whole_landscape:
             named = {f"c_{n}": c for n, c in enumerate(components, start=1)}
             return self.vector({**named, "mean": float(potential.mean()), **unknown})
         x = np.zeros(len(self.names))

@@ -12,10 +12,11 @@ guess, steps stopped 10 to 100 µeV off. With the exact ones they find the optim
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Literal
 
 import numpy as np
 
-from disorder_landscape.inference.optimum import Optimum
+from disorder_landscape.inference.optimum import Optimum, fits
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.observation import Observation, objective, overall_misfit
 from disorder_landscape.model.parameters import FloatArray
@@ -32,14 +33,17 @@ ENOUGH = 0.3
 """Steps end when one lowers −2 log(posterior) by less than this, which is half a standard deviation
 of all unknowns together. The simulation's own error adds about as much at a noise of 0.01 e²/h."""
 ROUGHLY = 3.0
-"""… or by less than this, where only an optimum's place is asked for."""
+"""… or by less than this, where only an optimum's place or a fit is asked for."""
 FAR_OFF, CREEPING, LATELY = 2.0, 0.5, 4
-"""Steps that creep end, too, where only a place is asked for: if χ² is more than this many times
+"""Steps that creep end, too, where no optimum is asked for: if χ² is more than this many times
 the number of data, and −2 log(posterior) is more than this part of what it was so many steps ago.
 (Steps that arrive halve it in one or two.)"""
 NEAR = 0.5
 """Steps end at a known optimum if they come this near, in its standard deviations, root mean square
 over the principal axes."""
+
+Goal = Literal["optimum", "place", "fit"]
+"""Where steps end: at an optimum, near one, or as soon as the noise explains the misfit."""
 
 
 def gauss_newton(
@@ -47,7 +51,7 @@ def gauss_newton(
     start: FloatArray,
     progress: Callable[[int, float, float], None] = lambda number, misfit, spread: None,
     known: Sequence[Optimum] = (),
-    roughly: bool = False,
+    goal: Goal = "optimum",
 ) -> Gaussian:
     """Return the local optimum that damped Gauss–Newton steps lead to, with Laplace's covariance.
 
@@ -60,15 +64,14 @@ def gauss_newton(
         standard deviation of V in meV.
     known : sequence of Optimum
         Steps that come near one of these, and not below it, end there.
-    roughly : bool
-        Whether only the place of the optimum is asked for.
+    goal : "optimum", "place" or "fit"
     """
     prior, variance = observation.unknowns.prior, observation.variance
     precision = np.linalg.inv(prior.covariance)
     x, (factor, first, largest) = start, DAMPING
     y, slope = linearise(observation, start)
     best, damping = float(objective(observation, x, y)), 0.0
-    heights = [best]
+    heights, roughly = [best], goal != "optimum"
     for number in range(STEPS):
         information = precision_of(observation, slope)
         spread = observation.unknowns.site_std(np.asarray(np.linalg.inv(information), np.float64))
@@ -95,6 +98,8 @@ def gauss_newton(
             x, y, best = tried, y_tried, found
         heights.append(best)
         if gained < (ROUGHLY if roughly else ENOUGH) or (roughly and _creeps(heights, y.size)):
+            break
+        if goal == "fit" and fits(observation, y):
             break
         for one in known:
             if best > one.objective and is_near(one, x):

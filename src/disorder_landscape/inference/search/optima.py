@@ -13,10 +13,16 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
-from disorder_landscape.inference.optimum import Optimum, best, optimum_at, same_answer, unseen
+from disorder_landscape.inference.optimum import (
+    Optimum,
+    best,
+    optimum_at,
+    same_answer,
+    unseen,
+)
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.observation import Observation
-from disorder_landscape.inference.search.gauss_newton import is_near
+from disorder_landscape.inference.search.gauss_newton import Goal, is_near
 from disorder_landscape.inference.verdict import UNSEEN, is_surely_right
 from disorder_landscape.model.parameters import BOLTZMANN, FloatArray
 
@@ -35,9 +41,9 @@ this many kT. …"""
 STARTS_WHEN_WIDE = 8, 16
 """… Then there are at least, and at most, so many starts."""
 
-Steps = Callable[[Observation, FloatArray, int, str, Sequence[Optimum], bool], Gaussian]
+Steps = Callable[[Observation, FloatArray, int, str, Sequence[Optimum], Goal], Gaussian]
 """Gauss–Newton steps of an observation, from a start, in an attempt, by a name, which may end at
-known optima, and whether only roughly."""
+known optima, to a goal."""
 
 
 @dataclass(eq=False)
@@ -96,7 +102,7 @@ class Optima:
         """Find the optimum that steps from x (unknown,) lead to."""
         name = self._next_name(attempt)
         known = [one for one, _ in self._on_some]
-        end = self.steps(self.some, x, attempt, f"{name}.some", known, True)
+        end = self.steps(self.some, x, attempt, f"{name}.some", known, "place")
         for one, leads_to in self._on_some:
             if is_near(one, end.mean):
                 self._found_again(leads_to, attempt)
@@ -107,18 +113,18 @@ class Optima:
         to = None if leave else self._optimum_from(end.mean, attempt, name)
         self._on_some.append((near, to))
 
-    def end_at(self, x: FloatArray, attempt: int) -> None:
+    def end_at(self, x: FloatArray, attempt: int, goal: Goal = "optimum") -> None:
         """Find the optimum that steps from x (unknown,) with all data lead to."""
-        self._optimum_from(x, attempt, self._next_name(attempt))
+        self._optimum_from(x, attempt, self._next_name(attempt), goal)
 
     def _next_name(self, attempt: int) -> str:
         """Count a start, and return its name."""
         self.starts += 1
         return f"{attempt}.{self.starts - 1}"
 
-    def _optimum_from(self, x: FloatArray, attempt: int, name: str) -> int:
+    def _optimum_from(self, x: FloatArray, attempt: int, name: str, goal: Goal = "optimum") -> int:
         """Return which optimum of all data steps lead to."""
-        end = self.steps(self.observation, x, attempt, name, self.found, False)
+        end = self.steps(self.observation, x, attempt, name, self.found, goal)
         new = optimum_at(self.observation, end, attempt)
         for k, one in enumerate(self.found):
             if same_answer(self.observation, one, new):

@@ -1,0 +1,108 @@
+"""V of every site from conductances alone, over lower and lower μ."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import disorder_landscape as dl
+from disorder_landscape.inference.invert import invert
+from disorder_landscape.inference.problem.gaussian import Gaussian
+from disorder_landscape.inference.problem.measurement import Measurement
+from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
+from disorder_landscape.inference.problem.prior import Prior
+from disorder_landscape.inference.problem.unknowns import Unknowns
+from disorder_landscape.inference.search.whole_landscape import (
+    HIGHEST,
+    STARTS,
+    WAYS_DOWN,
+    optima_of_whole_landscape,
+)
+from disorder_landscape.inference.verdict import CONVERGED, is_surely_right, verdict
+from disorder_landscape.model.disorder import smooth_noise
+from disorder_landscape.solver.quadrature import thermal_quadrature
+from linear_data import DATA, Linear, posterior
+
+SITES, AMPLITUDE, NOISE = 30, 0.8, 0.002
+MU, B, BIAS = np.linspace(0, 4.2, 12), np.linspace(0, 0.8, 3), np.linspace(-0.08, 0.08, 5)
+NOTHING = Measurement(np.zeros((12, 3, 5, 4)), MU, B, BIAS, 0.0, (15.0, 15.0), 0.05)
+UNKNOWNS = Unknowns(
+    Prior(components=None, sites=SITES, amplitude=AMPLITUDE).for_measurement(NOTHING)
+)
+
+
+def test_v_of_every_site_is_found_without_a_guess():
+    """Of disorder that is not cut to components; data are by quadrature, another route."""
+    rng = np.random.default_rng(1)
+    V = smooth_noise(rng, SITES, 3, "sum", AMPLITUDE)
+    V -= V.mean()
+    exact = thermal_quadrature([dl.Nanowire(potential=V)], MU, B, BIAS, 0.05).conductance[0]
+    G = exact + NOISE * rng.normal(size=exact.shape)
+    observation = Observation(replace(NOTHING, G=G), UNKNOWNS, noise_of_channels(NOISE))
+    found = invert(observation, None)
+    assert verdict(observation, found) == CONVERGED
+    std = UNKNOWNS.potential_std(found.answer.covariance)
+    assert V.std() > 0.2
+    assert np.sqrt((std**2).mean()) < 0.02
+    assert abs((UNKNOWNS.potential(found.answer.mean) - V) / std).max() < 4
+
+
+def test_parts_hold_the_highest_mu_that_are_measured():
+    G = np.zeros_like(NOTHING.G)
+    G[[1, 10]] = np.nan
+    reversed_axis = replace(NOTHING, G=G, mu=MU[::-1])
+    parts = Observation(reversed_axis, UNKNOWNS, np.ones(4)).on_highest_lines((0.1, 0.11, 0.3, 1))
+    assert [part.measurement.mu.size for part in parts] == [1, 3, 10]
+    assert parts[0].measurement.mu == MU[-1]
+    np.testing.assert_array_equal(parts[1].measurement.mu, MU[[11, 9, 8]])
+
+
+@pytest.fixture
+def whole():
+    slope = np.random.default_rng(0).normal(size=(len(UNKNOWNS.names), DATA))
+    return Whole(np.zeros(DATA), slope, unknowns=UNKNOWNS)
+
+
+class Whole(Linear):
+    """Linear data of a whole landscape, all of them in each part."""
+
+    def on_highest_lines(self, shares):
+        return [replace(self) for _ in shares]
+
+
+def test_steps_use_more_and_more_data_until_starts_agree(whole):
+    exact, asked = posterior(whole), []
+
+    def steps(of, x, attempt, name, known, goal):
+        asked.append((attempt, goal))
+        return exact
+
+    optima, ways = optima_of_whole_landscape(whole, steps, 0)
+    down, again = [(0, "fit")] * len(HIGHEST), [(0, "fit"), (0, "place")]
+    assert asked == [*down, (0, "place"), *again, *again]
+    assert ways == 1
+    assert optima.is_settled
+    assert optima.found[0].found_by == (0, 0, 0)
+
+
+def test_other_ways_down_are_tried_from_draws_of_the_prior(whole):
+    begun, ends = [], []
+    far = Gaussian(30 + posterior(whole).mean, 1e-4 * np.eye(len(UNKNOWNS.names)))
+
+    def steps(of, x, attempt, name, known, goal):
+        if name.endswith(".0.highest.0"):
+            begun.append(x)
+        if goal == "place":
+            ends.append(attempt)
+        return far
+
+    optima, ways = optima_of_whole_landscape(whole, steps, 0)
+    assert ways == WAYS_DOWN == len(begun)
+    assert len(ends) == STARTS[False] * WAYS_DOWN
+    assert not begun[0].any()
+    assert abs(begun[1] - begun[2]).max() > 1
+    assert not optima.fits
+
+
+def test_no_answer_of_a_whole_landscape_is_surely_right(whole):
+    assert not is_surely_right(replace(whole, variance=np.full(DATA, 1e-12)))
