@@ -34,10 +34,10 @@ ENOUGH = 0.3
 of all unknowns together. The simulation's own error adds about as much at a noise of 0.01 e²/h."""
 ROUGHLY = 3.0
 """… or by less than this, where only an optimum's place or a fit is asked for."""
-FAR_OFF, CREEPING, LATELY = 2.0, 0.5, 4
-"""Steps that creep end, too, where no optimum is asked for: if χ² is more than this many times
-the number of data, and −2 log(posterior) is more than this part of what it was so many steps ago.
-(Steps that arrive halve it in one or two.)"""
+CREEPING, LATELY = 0.5, 4
+"""Steps that creep end, too, where no optimum is asked for: if the noise does not explain the
+misfit, and what −2 log(posterior) is above the number of data is more than this part of what it was
+so many steps ago. (Steps that arrive halve it in one or two.)"""
 NEAR = 0.5
 """Steps end at a known optimum if they come this near, in its standard deviations, root mean square
 over the principal axes."""
@@ -97,9 +97,12 @@ def gauss_newton(
         if gained > 0:
             x, y, best = tried, y_tried, found
         heights.append(best)
-        if gained < (ROUGHLY if roughly else ENOUGH) or (roughly and _creeps(heights, y.size)):
+        if gained < (ROUGHLY if roughly else ENOUGH):
             break
-        if goal == "fit" and fits(observation, y):
+        explained = fits(observation, y)
+        if roughly and not explained and _creep(heights, y.size):
+            break
+        if goal == "fit" and explained:
             break
         for one in known:
             if best > one.objective and is_near(one, x):
@@ -109,11 +112,10 @@ def gauss_newton(
     return laplace(observation, x, slope)
 
 
-def _creeps(heights: Sequence[float], data: int) -> bool:
+def _creep(heights: Sequence[float], data: int) -> bool:
     """Return whether steps through these values of −2 log(posterior) lead nowhere."""
-    if len(heights) <= LATELY or heights[-1] < FAR_OFF * data:
-        return False
-    return heights[-1] > CREEPING * heights[-1 - LATELY]
+    before, now = heights[max(0, len(heights) - 1 - LATELY)], heights[-1]
+    return len(heights) > LATELY and now - data > CREEPING * (before - data)
 
 
 def is_near(optimum: Optimum, x: FloatArray) -> bool:

@@ -39,9 +39,10 @@ def optima_of_whole_landscape(
     parts = observation.on_highest_lines(HIGHEST)
     optima = Optima(observation, parts[-1], steps)
     prior, rng = observation.unknowns.prior, np.random.default_rng([seed, 2**31 + 3])
+    few, more = STARTS
     for way in range(WAYS_DOWN):
         tried = 0
-        while not optima.is_done and tried < STARTS[optima.fits]:
+        while not optima.is_done and tried < (more if optima.fits else few):
             if tried == 0:
                 x = prior.mean if way == 0 else prior.draw(rng, 2)[0]
             else:
