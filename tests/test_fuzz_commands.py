@@ -664,7 +664,7 @@ def test_infer_writes_or_refuses(count, refused_or_done):
         "--from-prior": st.just(True),
         "--samples": texts("2", "4", "3", "0", "-2"),
         "--seed": texts("0", "3", "-1", "2147483648", "4294967296"),
-        "--plot": st.sampled_from(["new.png", *NEW_FILES]),
+        "--plot": st.sampled_from(["new.png", "new.html", *NEW_FILES]),
         **ELSEWHERE,
     }
     usual = {"--model": "model", "--output": "new.nc", "--samples": "4", "--workers": "1"}

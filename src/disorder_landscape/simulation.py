@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from tokenize import TokenError
 from typing import Any
@@ -182,12 +182,12 @@ def check_outputs(output: Path, plot: Path | None) -> None:
 
 
 @needs("figures")
-def check_plot(path: Path) -> None:
-    """Raise an ArgumentError unless the file's ending is one that matplotlib can draw."""
+def check_plot(path: Path, others: Sequence[str] = ()) -> None:
+    """Raise an ArgumentError unless the file's ending is one of matplotlib's, or of others."""
     from matplotlib.backend_bases import FigureCanvasBase
 
-    formats = dict(FigureCanvasBase.get_supported_filetypes())
-    formats.pop("pgf", None)  # it needs LaTeX
+    formats = [*FigureCanvasBase.get_supported_filetypes(), *others]
+    formats.remove("pgf")  # it needs LaTeX
     must = f"end in one of {', '.join(formats)}"
     require(path.suffix.removeprefix(".") in formats, "plot", must, f"it is '{path}'")
 

@@ -63,7 +63,8 @@ def infer(
     ] = 64,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the ensembles.")] = 0,
     plot: Annotated[
-        Path | None, typer.Option(help="Picture of the result; of several, a folder of them.")
+        Path | None,
+        typer.Option(help="Picture or page (.html) of the result; of several, a folder."),
     ] = None,
     workers: Workers = 2,
     share: ShareOfTasks = "1/1",
@@ -128,7 +129,7 @@ def _infer_alone(settings: Settings, task: Task) -> None:
     same = output.resolve() == task.measurement.resolve()
     require(not same, "output", "be another file than the measurement", f"both are '{output}'")
     if plot is not None:
-        check_plot(plot)
+        check_plot(plot, ["html"])
         check_writable("plot", plot)
     measured = read_dataset(task.measurement)
     errors = stated_noise(measured.attrs) if settings.noise is None else settings.noise

@@ -4,27 +4,38 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
 
 from disorder_landscape.files import write_picture
 from disorder_landscape.inference.inferred import prior_of_result
+from disorder_landscape.inference.page import write_page
 from disorder_landscape.inference.problem.distributions import Distribution
 from disorder_landscape.inference.problem.measurement import Measurement
 from disorder_landscape.inference.report import (
+    SURE,
     error_bar,
     parameter_with_std,
     prior_as_text,
+    topological_sentence,
+    verdict_sentence,
 )
 from disorder_landscape.inference.verdict import CONVERGED
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.model.quantities import CONDUCTANCES
 from disorder_landscape.parts import needs
 
-FIGURE_SIZE = 7.06, 7.2
-"""In inches; the width is that of a page of the paper's journal."""
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+WIDTH, HEIGHT = 7.06, 1.65
+"""In inches: of a page of the paper's journal, and of a row of height one."""
+PAGE = ".html"
+"""Ending of a page."""
+RESIDUAL = {"cmap": "RdBu_r", "vmin": -4, "vmax": 4}
+"""How residuals are shown, in standard deviations of the noise."""
 INTERVALS = (5, 95), (25, 75)
 """Percentiles of the samples between which V is shaded."""
 APART = np.array([-0.25, 0.25])
@@ -33,7 +44,7 @@ APART = np.array([-0.25, 0.25])
 
 @needs("figures")
 def plot_inference(result: xr.Dataset, measurement: Measurement, path: Path) -> None:
-    """Draw V and how sure it is, components, misfits, G measured and explained, P(topological).
+    """Draw V and how sure it is, parameters, G measured and explained, P(topological) and gap.
 
     Parameters
     ----------
@@ -42,7 +53,7 @@ def plot_inference(result: xr.Dataset, measurement: Measurement, path: Path) -> 
     measurement : Measurement
         What it was given.
     path : Path
-        Picture, of a format that matplotlib knows.
+        Picture, of a format that matplotlib knows, or a page (.html).
 
     Raises
     ------
@@ -50,40 +61,52 @@ def plot_inference(result: xr.Dataset, measurement: Measurement, path: Path) -> 
         If the file cannot be written.
     """
     import matplotlib as mpl
+
+    with mpl.rc_context({"font.size": 8, "axes.titlesize": 8}):
+        figure = _figure(result, measurement)
+        if path.suffix == PAGE:
+            write_page(result, figure, path)
+        else:
+            write_picture(path, figure, dpi=200)
+
+
+def _figure(result: xr.Dataset, measurement: Measurement) -> Figure:
     from matplotlib.figure import Figure
 
     unknown = prior_of_result(result).unknown
     with_components = "component" in result.dims
     rows = {
-        "V": (["V"] * 4, 1.0),
-        "std": (["std"] * 4, 0.6),
-        "c": ((["c"] * 2 if with_components else ["misfit"] * 2) + ["misfit"] * 2, 0.9),
-        "parameters": (["parameters"] * 4, 0.3 + 0.12 * len(unknown)),
-        "maps": (["measured", "explained", "T", "P"], 1.3),
+        "V": (["V"] * 6, 1.0),
+        "std": (["std"] * 6, 0.6),
+        "c": ((["c"] * 3 if with_components else ["misfit"] * 3) + ["misfit"] * 3, 0.9),
+        "parameters": (["parameters"] * 6, 0.3 + 0.12 * len(unknown)),
+        "data": (_twice("measured", "explained", "residual"), 1.3),
+        "maps": (_twice("T", "P", "gap"), 1.3),
     }
     if not unknown:
         del rows["parameters"]
     heights = [height for _, height in rows.values()]
-    width, least_height = FIGURE_SIZE
-    with mpl.rc_context({"font.size": 8, "axes.titlesize": 8}):
-        height = least_height * sum(heights) / (sum(heights) - rows.get("parameters", ([], 0.0))[1])
-        figure = Figure(figsize=(width, height), layout="constrained")
-        panels: dict[str, Any] = figure.subplot_mosaic(
-            [row for row, _ in rows.values()], height_ratios=heights
-        )
-        _potential(panels["V"], result)
-        _potential_std(panels["std"], result)
-        if with_components:
-            _components(panels["c"], result)
-        if unknown:
-            _parameters(panels["parameters"], result, unknown)
-        _misfit(panels["misfit"], result)
-        _conductances(figure, panels["measured"], panels["explained"], result, measurement)
-        _maps(figure, panels["T"], panels["P"], result)
-        color = "k" if result.attrs["verdict"] == CONVERGED else "C3"
-        title = f"{result.attrs['verdict']}; from {result.attrs['start']}"
-        figure.suptitle(title, fontsize=8, color=color)
-        write_picture(path, figure, dpi=200)
+    figure = Figure(figsize=(WIDTH, HEIGHT * sum(heights)), layout="constrained")
+    panels: dict[str, Any] = figure.subplot_mosaic(
+        [row for row, _ in rows.values()], height_ratios=heights
+    )
+    _potential(panels["V"], result)
+    _potential_std(panels["std"], result)
+    if with_components:
+        _components(panels["c"], result)
+    if unknown:
+        _parameters(panels["parameters"], result, unknown)
+    _misfit(panels["misfit"], result)
+    _conductances(figure, panels, result, measurement)
+    _maps(figure, panels, result, measurement)
+    color = "k" if result.attrs["verdict"] == CONVERGED else "C3"
+    said = f"{verdict_sentence(result)}\n{topological_sentence(result)}"
+    figure.suptitle(said, fontsize=8, color=color)
+    return figure
+
+
+def _twice(*names: str) -> list[str]:
+    return [name for name in names for _ in range(2)]
 
 
 def _potential(panel: Any, result: xr.Dataset) -> None:
@@ -145,7 +168,7 @@ def _misfit(panel: Any, result: xr.Dataset) -> None:
 
 
 def _conductances(
-    figure: Any, measured: Any, explained: Any, result: xr.Dataset, measurement: Measurement
+    figure: Any, panels: Mapping[str, Any], result: xr.Dataset, measurement: Measurement
 ) -> None:
     """Show the first channel that was measured, at the bias next to zero."""
     there = np.isfinite(measurement.G).any(axis=(0, 1, 2))
@@ -157,24 +180,59 @@ def _conductances(
     local = name in ("G_LL", "G_RR")
     norm = {"vmin": 0 if local else -largest, "vmax": largest}
     norm["cmap"] = "viridis" if local else "RdBu_r"
-    channel_name, bias = rf"$G_\mathrm{{{name[2:]}}}$", f"{measurement.bias[at]:g} meV"
-    titles = f"{channel_name}, {bias}: measured", f"{channel_name} explained"
-    for panel, values, title in zip((measured, explained), (G, answer), titles, strict=True):
-        image = _map(panel, measurement.mu, measurement.B, values, **norm)
-        panel.set_title(title)
-    explained.set_ylabel("")
-    figure.colorbar(image, ax=[measured, explained], label="$e^2/h$", location="bottom", aspect=30)
+    noise = result.attrs["noise"][channel]
+    shown = {
+        "measured": (G, norm, "$e^2/h$"),
+        "explained": (answer, norm, "$e^2/h$"),
+        "residual": ((G - answer) / noise, RESIDUAL, r"noise's $\sigma$"),
+    }
+    for kind, (values, options, unit) in shown.items():
+        image = _map(panels[kind], measurement.mu, measurement.B, values, **options)
+        figure.colorbar(image, ax=panels[kind], label=unit, location="bottom", aspect=20)
+    bias = f"{measurement.bias[at]:g} meV"
+    panels["measured"].set_title(rf"$G_\mathrm{{{name[2:]}}}$ at {bias}, measured")
+    panels["explained"].set_title("explained")
+    panels["residual"].set_title("measured minus explained")
+    for kind in ("explained", "residual"):
+        panels[kind].set_ylabel("")
 
 
-def _maps(figure: Any, visibility: Any, probability: Any, result: xr.Dataset) -> None:
-    grids = result["map_mu"].to_numpy(), result["map_B"].to_numpy()
-    T = _map(visibility, *grids, result["T_IV"][0], cmap="RdBu", vmin=-1, vmax=1)
-    P = _map(probability, *grids, result["P_topological"], cmap="Purples", vmin=0, vmax=1)
-    visibility.set_title(r"$T_\mathrm{IV}$ of the mean")
-    probability.set_title("$P$(topological)")
-    for panel, image in ((visibility, T), (probability, P)):
-        panel.set_ylabel("")
-        figure.colorbar(image, ax=panel, location="bottom", aspect=15)
+def _maps(
+    figure: Any, panels: Mapping[str, Any], result: xr.Dataset, measurement: Measurement
+) -> None:
+    """Show T_IV, P(topological) with the points of the data, and the gap that is sure."""
+    fine = result[f"map_{measurement.axis}"].to_numpy(), result["map_B"].to_numpy()
+    data = measurement.mu, measurement.B
+    shown: dict[str, tuple[Any, Any, dict[str, Any]]] = {
+        "T": (fine, result["T_IV"][0], {"cmap": "RdBu", "vmin": -1, "vmax": 1}),
+        "P": (fine, result["P_topological"], {"cmap": "Purples", "vmin": 0, "vmax": 1}),
+        "gap": (data, 1e3 * sure_gap(result), {"cmap": "cividis", "vmin": 0}),
+    }
+    titles = {
+        "T": r"$T_\mathrm{IV}$ of the mean",
+        "P": "$P$(topological); dots: data",
+        "gap": f"gap, with {100 * SURE:.0f} %",
+    }
+    units = {"T": "", "P": "", "gap": "at least [µeV]"}
+    for kind, (grid, values, options) in shown.items():
+        mu, B = grid
+        image = _map(panels[kind], mu, B, values, **options)
+        figure.colorbar(image, ax=panels[kind], label=units[kind], location="bottom", aspect=20)
+        panels[kind].set_title(titles[kind])
+    at_B, at_mu = np.meshgrid(measurement.B, measurement.mu)
+    panels["P"].plot(at_B.ravel(), at_mu.ravel(), ".", color="0.4", ms=0.6)
+    for kind in ("P", "gap"):
+        panels[kind].set_ylabel("")
+    if measurement.axis != "mu":
+        for kind in ("measured", "T"):
+            panels[kind].set_ylabel(measurement.axis)
+
+
+def sure_gap(result: xr.Dataset) -> FloatArray:
+    """Return the energy in meV that the gap exceeds in SURE of the samples, shape (mu, B)."""
+    surely = (result["P_gap"] >= SURE).sum("gap").to_numpy()
+    energies = np.concatenate([[0.0], result["gap"].to_numpy()])
+    return np.asarray(energies[surely])
 
 
 def _map(panel: Any, mu: FloatArray, B: FloatArray, values: Any, **options: Any) -> Any:

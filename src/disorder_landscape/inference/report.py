@@ -10,7 +10,7 @@ from disorder_landscape.config import TrainingConfig
 from disorder_landscape.inference.inferred import prior_of_result
 from disorder_landscape.inference.problem.distributions import Distribution, Uniform
 from disorder_landscape.inference.problem.observation import noise_of_channels, one_or_each
-from disorder_landscape.inference.verdict import CONVERGED
+from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED, NOT_DESCRIBED
 from disorder_landscape.model.parameters import NOISE_FLOOR, FloatArray
 from disorder_landscape.model.quantities import CONDUCTANCES
 
@@ -21,7 +21,10 @@ ALIKE = 1.1
 OTHERWISE = 1.25
 """… and that noise is not the stated one if they are more or less than it by this factor."""
 
-NOT_TO_BE_TRUSTED = "so neither the error bars below nor P(topological) are to be trusted"
+SURE = 0.95
+"""A wire is topological if it is so with more than this probability."""
+
+NOT_TO_BE_TRUSTED = "so neither error bars nor P(topological) are to be trusted"
 
 
 def parse_noise(text: str) -> float | dict[str, float]:
@@ -89,6 +92,36 @@ def prior_as_text(belief: Distribution) -> str:
 def error_bar(result: xr.Dataset) -> float:
     """Return that of V in µeV, root mean square over the sites."""
     return 1e3 * float(np.sqrt((result["potential_std"] ** 2).mean()))
+
+
+def verdict_sentence(result: xr.Dataset) -> str:
+    """Return the verdict as a sentence."""
+    verdict = result.attrs["verdict"]
+    if verdict == CONVERGED:
+        known = f"V is known to {error_bar(result):.2g} µeV (root mean square over the sites)"
+        return f"Converged: this wire explains the data within their noise, and {known}."
+    reason = {
+        NOT_CONVERGED: "a better answer may have been missed",
+        NOT_DESCRIBED: "no wire of this model explains the data within their noise",
+    }[verdict]
+    return f"{verdict.capitalize()}: {reason}, {NOT_TO_BE_TRUSTED}."
+
+
+def topological_sentence(result: xr.Dataset) -> str:
+    """Return how much of the measured range is topological, as a sentence."""
+    P = result["P_topological"].to_numpy()
+    surely, perhaps = (100 * float((P > least).mean()) for least in (SURE, 1 - SURE))
+    measured = f"the measured range of {'gate' if 'gate' in result.dims else 'µ'} and B"
+    if perhaps == 0:
+        return f"It is topological nowhere in {measured}."
+    more = f", and may be in {perhaps - surely:.0f} % more" if perhaps - surely >= 1 else ""
+    return f"It is topological in {surely:.0f} % of {measured} (P > {SURE:g}){more}."
+
+
+def not_fixed_lines(result: xr.Dataset) -> list[str]:
+    """Return sentences on what the data do not fix, and do not tell apart, if there is any."""
+    said = {"not_fixed": "The data do not fix: ", "not_told_apart": "They do not tell apart: "}
+    return [f"{words}{result.attrs[name]}." for name, words in said.items() if result.attrs[name]]
 
 
 def summary(result: xr.Dataset) -> list[str]:

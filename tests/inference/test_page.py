@@ -1,0 +1,90 @@
+"""The page and the picture of a result, of a measurement with a gate axis and an unknown g."""
+
+import re
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.figure import Figure
+
+import disorder_landscape as dl
+from disorder_landscape.inference.file import PAPERS_SETTINGS
+from disorder_landscape.inference.page import page
+from disorder_landscape.inference.plot import plot_inference, sure_gap
+from disorder_landscape.inference.problem.measurement import measurement_of
+from disorder_landscape.inference.report import topological_sentence, verdict_sentence
+from disorder_landscape.inference.verdict import NOT_CONVERGED, NOT_DESCRIBED
+from disorder_landscape.model.quantities import CONDUCTANCES
+
+PRIOR = dl.Prior(components=1, sites=50, g=(23.0, 27.0), lever_arm=0.5)
+NOISE = 0.002
+
+
+@pytest.fixture(scope="module")
+def measured():
+    gate, B, bias = np.linspace(0, 1.2, 5), np.linspace(0, 0.8, 5), np.array([-0.03, 0.0, 0.03])
+    made = dl.conductance(dl.Nanowire(potential=np.zeros(50)), gate / 2, B, bias)
+    rng = np.random.default_rng(0)
+    shape = (gate.size, B.size, bias.size)
+    arrays = {
+        name: (("gate", "B", "bias"), made[name].to_numpy() + NOISE * rng.normal(size=shape))
+        for name in CONDUCTANCES
+    }
+    return xr.Dataset(arrays, {"gate": gate, "B": B, "bias": bias})
+
+
+@pytest.fixture(scope="module")
+def result(measured):
+    return dl.infer(measured, PRIOR, noise=NOISE, samples=16)
+
+
+@pytest.mark.parametrize("ending", [".html", ".png", ".pdf"])
+def test_a_result_is_drawn_in_each_format(result, measured, tmp_path, ending):
+    path = tmp_path / f"drawn{ending}"
+    plot_inference(result, measurement_of(measured, PAPERS_SETTINGS, complete=False), path)
+    begins = {".html": b"<!doctype html>", ".png": b"\x89PNG", ".pdf": b"%PDF"}
+    assert path.read_bytes().startswith(begins[ending])
+    assert [one.name for one in tmp_path.iterdir()] == [path.name]
+
+
+def test_a_page_says_what_was_found(result):
+    text = page(result, Figure())
+    assert verdict_sentence(result) in text
+    assert 'class="verdict converged"' in text
+    assert re.search(r"<td>Landé g-factor</td><td>23 to 27</td><td>2\d\.\d+ ± 0\.\d+</td>", text)
+    for name in CONDUCTANCES:
+        assert f"<td>{name}</td>" in text
+    assert text.count("<table>") == text.count("</table>") == 3
+    assert "<script" not in text
+    assert "http" not in text
+
+
+def test_what_a_result_says_is_no_html(result):
+    named = result.assign_attrs(start="<b>me & you</b>")
+    assert "&lt;b&gt;me &amp; you&lt;/b&gt;" in page(named, Figure())
+
+
+@pytest.mark.parametrize("verdict", [NOT_CONVERGED, NOT_DESCRIBED])
+def test_other_verdicts_say_what_not_to_trust(result, verdict):
+    doubtful = result.assign_attrs(verdict=verdict)
+    assert verdict_sentence(doubtful).startswith(f"{verdict.capitalize()}: ")
+    assert "to be trusted" in verdict_sentence(doubtful)
+    assert 'class="verdict doubtful"' in page(doubtful, Figure())
+
+
+def test_topological_shares_are_of_the_range(result):
+    P = xr.zeros_like(result["P_topological"])
+    said = topological_sentence(result.assign(P_topological=P))
+    assert said == "It is topological nowhere in the measured range of gate and B."
+    P[: P.shape[0] // 2] = 0.5
+    assert "in 0 % of" in topological_sentence(result.assign(P_topological=P))
+    assert "49 % more" in topological_sentence(result.assign(P_topological=P))
+    P[:] = 1.0
+    assert "in 100 % of" in topological_sentence(result.assign(P_topological=P))
+
+
+def test_the_sure_gap_is_what_nineteen_of_twenty_samples_exceed():
+    P_gap = np.array([1.0, 0.96, 0.94, 0.2])[:, None, None]
+    made = xr.Dataset({"P_gap": (("gap", "mu", "B"), P_gap)}, {"gap": [0.0, 0.1, 0.2, 0.3]})
+    np.testing.assert_array_equal(sure_gap(made), [[0.1]])
+    np.testing.assert_array_equal(sure_gap(made.assign(P_gap=0 * made["P_gap"])), [[0.0]])
