@@ -118,6 +118,7 @@ def _infer_alone(settings: Settings, task: Task) -> None:
     from disorder_landscape.files import check_netcdf, check_writable
     from disorder_landscape.inference.file import infer_file, prior_of
     from disorder_landscape.inference.infer import observation_of
+    from disorder_landscape.inference.plot import PAGE
     from disorder_landscape.inference.problem.observation import stated_noise
     from disorder_landscape.inference.progress import announce_inference, inference_progress
     from disorder_landscape.inference.report import noise_hint, summary
@@ -129,7 +130,7 @@ def _infer_alone(settings: Settings, task: Task) -> None:
     same = output.resolve() == task.measurement.resolve()
     require(not same, "output", "be another file than the measurement", f"both are '{output}'")
     if plot is not None:
-        check_plot(plot, ["html"])
+        check_plot(plot, [PAGE])
         check_writable("plot", plot)
     measured = read_dataset(task.measurement)
     errors = stated_noise(measured.attrs) if settings.noise is None else settings.noise

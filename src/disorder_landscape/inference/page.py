@@ -9,7 +9,6 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
 import xarray as xr
 
 from disorder_landscape.files import replacing
@@ -17,6 +16,7 @@ from disorder_landscape.inference.inferred import prior_of_result
 from disorder_landscape.inference.problem.parameters import BY_NAME
 from disorder_landscape.inference.report import (
     error_bar,
+    misfits,
     not_fixed_lines,
     parameter_with_std,
     prior_as_text,
@@ -69,7 +69,7 @@ def page(result: xr.Dataset, figure: Figure) -> str:
         f'<img alt="{escape(sentences)}" src="data:image/png;base64,{_png(figure)}">',
         _table("Parameters", ("", "before", "found"), _parameters(result)),
         *(f"<p>{escape(line)}</p>" for line in not_fixed_lines(result)),
-        _table("Misfit", ("", "root mean square (e²/h)", "stated noise"), _misfits(result)),
+        _table("Misfit", ("", "root mean square (e²/h)", "stated noise"), misfits(result)),
         _table("How", ("", ""), _how(result)),
         "</body></html>",
     ]
@@ -96,19 +96,6 @@ def _parameters(result: xr.Dataset) -> list[tuple[str, str, str]]:
     return [
         (BY_NAME[name].long_name, prior_as_text(belief), parameter_with_std(result, name))
         for name, belief in prior_of_result(result).unknown.items()
-    ]
-
-
-def _misfits(result: xr.Dataset) -> list[tuple[str, str, str]]:
-    rows = zip(
-        result["channel"].to_numpy(),
-        result["misfit"].to_numpy(),
-        result.attrs["noise"],
-        strict=True,
-    )
-    return [
-        (name, f"{misfit:.5f}" if np.isfinite(misfit) else "not measured", f"{noise:g}")
-        for name, misfit, noise in rows
     ]
 
 

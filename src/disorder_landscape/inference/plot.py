@@ -14,6 +14,7 @@ from disorder_landscape.inference.inferred import prior_of_result
 from disorder_landscape.inference.page import write_page
 from disorder_landscape.inference.problem.distributions import Distribution
 from disorder_landscape.inference.problem.measurement import Measurement
+from disorder_landscape.inference.problem.observation import errors_variance
 from disorder_landscape.inference.report import (
     SURE,
     error_bar,
@@ -32,8 +33,8 @@ if TYPE_CHECKING:
 
 WIDTH, HEIGHT = 7.06, 1.65
 """In inches: of a page of the paper's journal, and of a row of height one."""
-PAGE = ".html"
-"""Ending of a page."""
+PAGE = "html"
+"""The format of a page."""
 RESIDUAL = {"cmap": "RdBu_r", "vmin": -4, "vmax": 4}
 """How residuals are shown, in standard deviations of the noise."""
 INTERVALS = (5, 95), (25, 75)
@@ -64,7 +65,7 @@ def plot_inference(result: xr.Dataset, measurement: Measurement, path: Path) -> 
 
     with mpl.rc_context({"font.size": 8, "axes.titlesize": 8}):
         figure = _figure(result, measurement)
-        if path.suffix == PAGE:
+        if path.suffix == f".{PAGE}":
             write_page(result, figure, path)
         else:
             write_picture(path, figure, dpi=200)
@@ -180,11 +181,11 @@ def _conductances(
     local = name in ("G_LL", "G_RR")
     norm = {"vmin": 0 if local else -largest, "vmax": largest}
     norm["cmap"] = "viridis" if local else "RdBu_r"
-    noise = result.attrs["noise"][channel]
+    std = np.sqrt(errors_variance(result.attrs["noise"][channel]))
     shown = {
         "measured": (G, norm, "$e^2/h$"),
         "explained": (answer, norm, "$e^2/h$"),
-        "residual": ((G - answer) / noise, RESIDUAL, r"noise's $\sigma$"),
+        "residual": ((G - answer) / std, RESIDUAL, r"noise's $\sigma$"),
     }
     for kind, (values, options, unit) in shown.items():
         image = _map(panels[kind], measurement.mu, measurement.B, values, **options)

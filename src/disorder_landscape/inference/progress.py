@@ -26,6 +26,8 @@ WIRES_PER_UNKNOWN = 12, 60
 """How many times all data of a wire are simulated for each unknown: where an answer that fits is
 surely right, and otherwise. Means of inversions of 5+1 and ten components with noise of 0.001 and
 of 0.01 e²/h; single ones take a third to twice that. With 0.05 e²/h they take twice that, too."""
+WIRES_OF_LANDSCAPE = 700
+"""Of a whole landscape, however many unknowns it has, where the first way down leads to it."""
 
 
 def announce_inference(observation: Observation) -> None:
@@ -33,6 +35,8 @@ def announce_inference(observation: Observation) -> None:
     prior = observation.unknowns.prior.mean
     once, twice = WIRES_PER_UNKNOWN
     wires = prior.size * (once if is_surely_right(observation) else twice)
+    if observation.unknowns.is_whole_landscape:
+        wires = WIRES_OF_LANDSCAPE
     announce_repeated("infer", lambda k: observation.simulate(prior[None]), wires)
 
 

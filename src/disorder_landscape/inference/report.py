@@ -94,6 +94,20 @@ def error_bar(result: xr.Dataset) -> float:
     return 1e3 * float(np.sqrt((result["potential_std"] ** 2).mean()))
 
 
+def misfits(result: xr.Dataset) -> list[tuple[str, str, str]]:
+    """Return as text the name of each channel, its misfit and its noise in e²/h, if measured."""
+    channels = zip(
+        result["channel"].to_numpy(),
+        result["misfit"].to_numpy(),
+        result.attrs["noise"],
+        strict=True,
+    )
+    return [
+        (name, f"{misfit:.5f}", f"{noise:g}") if np.isfinite(misfit) else (name, "not measured", "")
+        for name, misfit, noise in channels
+    ]
+
+
 def verdict_sentence(result: xr.Dataset) -> str:
     """Return the verdict as a sentence."""
     verdict = result.attrs["verdict"]
@@ -142,11 +156,8 @@ def summary(result: xr.Dataset) -> list[str]:
         lines.append(f"not told apart  {result.attrs['not_told_apart']}")
     if attrs["verdict"] != CONVERGED:
         lines.insert(1, f"                {NOT_TO_BE_TRUSTED}")
-    misfits = zip(result["channel"].to_numpy(), result["misfit"].to_numpy(), strict=True)
-    for (name, misfit), noise in zip(misfits, attrs["noise"], strict=True):
-        value = (
-            f"{misfit:.5f} e²/h; noise: {noise:g} e²/h" if np.isfinite(misfit) else "not measured"
-        )
-        lines.append(f"misfit of {name}  {value}")
+    for name, misfit, noise in misfits(result):
+        unit = f" e²/h; noise: {noise} e²/h" if noise else ""
+        lines.append(f"misfit of {name}  {misfit}{unit}")
     hint = stated_noise_hint(result["misfit"].to_numpy(), np.asarray(attrs["noise"]))
     return [*lines, hint] if hint else lines
