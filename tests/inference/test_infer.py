@@ -153,6 +153,12 @@ def test_what_it_explains_is_not(measured):
     assert infer(measured, settings=SOON).attrs["verdict"] == CONVERGED
 
 
+def test_the_whole_landscape_has_no_network(measured):
+    whole = dl.Prior(components=None, sites=DATASET.sites)
+    with pytest.raises(ArgumentError, match="network must be none where V of every site"):
+        dl.infer(measured, whole, NOISE, network=MODEL)
+
+
 def test_much_noise_takes_importance_sampling(tmp_path):
     """Interrupted while its samples are drawn, it comes to the same."""
     noise, file = 0.05, tmp_path / "unfinished.json"

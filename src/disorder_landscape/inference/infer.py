@@ -51,6 +51,8 @@ from disorder_landscape.model.parameters import TEMPERATURE, Nanowire
 SAMPLES = 64
 PAPERS_SETTINGS = {"theta": 0.0, "barrier": Nanowire.barrier, "temperature": TEMPERATURE}
 """Where neither the prior nor the measurement says anything."""
+SEARCH = 2
+"""Number of the search's version. What an interrupted run of another one has found is of no use."""
 Model = str | Path | TrainedModel
 
 
@@ -208,6 +210,8 @@ def _network(
     if not _on_grid_of_network(_config_of(model), observation).is_measured.all():
         why = "because the network needs all conductances of its grid and some are missing"
         return None, f"the prior, {why}"
+    must = "be none where V of every site is unknown"
+    require(not observation.unknowns.is_whole_landscape, "network", must, "there is one")
     trained = model if isinstance(model, TrainedModel) else load_model(model)
     return trained, "the network's guess"
 
@@ -215,7 +219,8 @@ def _network(
 def _fingerprint(observation: Observation, trained: TrainedModel | None, options: str) -> bytes:
     """Return all that an inversion depends on."""
     m = observation.measurement
-    said = json.dumps([observation.unknowns.given.to_dict(), observation.noise.tolist(), options])
+    given = observation.unknowns.given.to_dict()
+    said = json.dumps([SEARCH, given, observation.noise.tolist(), options])
     arrays = m.G, m.mu, m.B, m.bias, np.array(m.theta)
     weights = [] if trained is None else trained.network.get_weights()
     return said.encode() + b"".join(np.ascontiguousarray(x).tobytes() for x in (*arrays, *weights))

@@ -101,6 +101,7 @@ def invert(
         predictions serve as features of the rounds, too (`usable_network_features`).
     seed : int
     settings : InversionSettings, optional
+        Of few unknowns; the whole landscape has its own search.
     progress : callable
     checkpoint : Checkpoint, optional
         What an interrupted run has found.
@@ -112,14 +113,16 @@ def invert(
         optima, attempts = optima_of_whole_landscape(observation, steps, seed)
     else:
         usual = usual_settings(usable_network_features(model, observation))
-        found = _optima(observation, model, steps, seed, settings or usual, progress, cache)
+        found = _optima_of_few_unknowns(
+            observation, model, steps, seed, settings or usual, progress, cache
+        )
         optima, attempts, rounds = found
     report = partial(_report, progress, attempts - 1, IMPORTANCE_SAMPLING)
     drawn = posterior_samples(observation, optima.found, [seed, 2**31 + 2], cache, report)
     return Outcome(optima.found, drawn, attempts, rounds)
 
 
-def _optima(
+def _optima_of_few_unknowns(
     observation: Observation,
     model: TrainedModel | None,
     steps: Steps,

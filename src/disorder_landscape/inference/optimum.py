@@ -42,7 +42,7 @@ class Optimum:
     @property
     def fits(self) -> bool:
         """Whether the noise explains the misfit."""
-        return self.excess <= TOLERATED
+        return is_noise(self.excess)
 
     @property
     def log_evidence(self) -> float:
@@ -57,9 +57,9 @@ def optimum_at(observation: Observation, answer: Gaussian, attempt: int = 0) -> 
     return Optimum(answer, data, height, chi_square_excess(observation, data), (attempt,))
 
 
-def fits(observation: Observation, data: FloatArray) -> bool:
-    """Return whether the noise explains the misfit of simulated data (datum,)."""
-    return chi_square_excess(observation, data) <= TOLERATED
+def is_noise(excess: float) -> bool:
+    """Return whether the noise explains such an excess of χ²."""
+    return excess <= TOLERATED
 
 
 def chi_square_excess(observation: Observation, data: FloatArray) -> float:

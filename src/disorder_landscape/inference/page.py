@@ -20,8 +20,7 @@ from disorder_landscape.inference.report import (
     not_fixed_lines,
     parameter_with_std,
     prior_as_text,
-    topological_sentence,
-    verdict_sentence,
+    sentences_on,
 )
 from disorder_landscape.inference.verdict import CONVERGED
 
@@ -50,15 +49,16 @@ def write_page(result: xr.Dataset, figure: Figure, path: Path) -> None:
         Of the result.
     path : Path
     """
+    text = page(result, figure)
     with replacing(path) as temporary:
-        temporary.write_text(page(result, figure), encoding="utf-8")
+        temporary.write_text(text, encoding="utf-8")
 
 
 def page(result: xr.Dataset, figure: Figure) -> str:
     """Return the page."""
     attrs = result.attrs
     kind = "converged" if attrs["verdict"] == CONVERGED else "doubtful"
-    sentences = f"{verdict_sentence(result)} {topological_sentence(result)}"
+    sentences = " ".join(sentences_on(result))
     parts = [
         "<!doctype html>",
         '<html lang="en"><head><meta charset="utf-8">',
@@ -70,7 +70,7 @@ def page(result: xr.Dataset, figure: Figure) -> str:
         _table("Parameters", ("", "before", "found"), _parameters(result)),
         *(f"<p>{escape(line)}</p>" for line in not_fixed_lines(result)),
         _table("Misfit", ("", "root mean square (e²/h)", "stated noise"), misfits(result)),
-        _table("How", ("", ""), _how(result)),
+        _table("How it was found", ("", ""), _how(result)),
         "</body></html>",
     ]
     return "\n".join(part for part in parts if part)

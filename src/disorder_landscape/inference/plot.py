@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,8 +21,7 @@ from disorder_landscape.inference.report import (
     error_bar,
     parameter_with_std,
     prior_as_text,
-    topological_sentence,
-    verdict_sentence,
+    sentences_on,
 )
 from disorder_landscape.inference.verdict import CONVERGED
 from disorder_landscape.model.parameters import FloatArray
@@ -33,10 +33,12 @@ if TYPE_CHECKING:
 
 WIDTH, HEIGHT = 7.06, 1.65
 """In inches: of a page of the paper's journal, and of a row of height one."""
+LETTERS = 110
+"""That fit in a line of this width."""
 PAGE = "html"
 """The format of a page."""
 RESIDUAL = {"cmap": "RdBu_r", "vmin": -4, "vmax": 4}
-"""How residuals are shown, in standard deviations of the noise."""
+"""How residuals are shown, in standard deviations of all errors, the simulation's included."""
 INTERVALS = (5, 95), (25, 75)
 """Percentiles of the samples between which V is shaded."""
 APART = np.array([-0.25, 0.25])
@@ -101,7 +103,7 @@ def _figure(result: xr.Dataset, measurement: Measurement) -> Figure:
     _conductances(figure, panels, result, measurement)
     _maps(figure, panels, result, measurement)
     color = "k" if result.attrs["verdict"] == CONVERGED else "C3"
-    said = f"{verdict_sentence(result)}\n{topological_sentence(result)}"
+    said = "\n".join(fill(sentence, LETTERS) for sentence in sentences_on(result))
     figure.suptitle(said, fontsize=8, color=color)
     return figure
 
@@ -172,9 +174,10 @@ def _conductances(
     figure: Any, panels: Mapping[str, Any], result: xr.Dataset, measurement: Measurement
 ) -> None:
     """Show the first channel that was measured, at the bias next to zero."""
-    there = np.isfinite(measurement.G).any(axis=(0, 1, 2))
+    there, bias = np.isfinite(measurement.G).any(axis=(0, 1, 2)), measurement.bias
     channel = int(there.argmax())
-    name, at = CONDUCTANCES[channel], int(abs(measurement.bias).argmin())
+    bias_there = np.isfinite(measurement.G[..., channel]).any(axis=(0, 1))
+    name, at = CONDUCTANCES[channel], int(np.where(bias_there, abs(bias), np.inf).argmin())
     G = np.ma.masked_invalid(measurement.G[:, :, at, channel])
     answer = result[name].to_numpy()[:, :, at]
     largest = max(abs(G).max(), abs(answer).max())
@@ -185,13 +188,12 @@ def _conductances(
     shown = {
         "measured": (G, norm, "$e^2/h$"),
         "explained": (answer, norm, "$e^2/h$"),
-        "residual": ((G - answer) / std, RESIDUAL, r"noise's $\sigma$"),
+        "residual": ((G - answer) / std, RESIDUAL, r"$\sigma$ of all errors"),
     }
     for kind, (values, options, unit) in shown.items():
         image = _map(panels[kind], measurement.mu, measurement.B, values, **options)
         figure.colorbar(image, ax=panels[kind], label=unit, location="bottom", aspect=20)
-    bias = f"{measurement.bias[at]:g} meV"
-    panels["measured"].set_title(rf"$G_\mathrm{{{name[2:]}}}$ at {bias}, measured")
+    panels["measured"].set_title(rf"$G_\mathrm{{{name[2:]}}}$ at {bias[at]:g} meV, measured")
     panels["explained"].set_title("explained")
     panels["residual"].set_title("measured minus explained")
     for kind in ("explained", "residual"):
@@ -203,18 +205,18 @@ def _maps(
 ) -> None:
     """Show T_IV, P(topological) with the points of the data, and the gap that is sure."""
     fine = result[f"map_{measurement.axis}"].to_numpy(), result["map_B"].to_numpy()
-    data = measurement.mu, measurement.B
+    data, most = (measurement.mu, measurement.B), 1e3 * float(result["gap"].max())
     shown: dict[str, tuple[Any, Any, dict[str, Any]]] = {
         "T": (fine, result["T_IV"][0], {"cmap": "RdBu", "vmin": -1, "vmax": 1}),
         "P": (fine, result["P_topological"], {"cmap": "Purples", "vmin": 0, "vmax": 1}),
-        "gap": (data, 1e3 * sure_gap(result), {"cmap": "cividis", "vmin": 0}),
+        "gap": (data, 1e3 * sure_gap(result), {"cmap": "cividis", "vmin": 0, "vmax": most}),
     }
     titles = {
         "T": r"$T_\mathrm{IV}$ of the mean",
         "P": "$P$(topological); dots: data",
-        "gap": f"gap, with {100 * SURE:.0f} %",
+        "gap": f"gap that {100 * SURE:.0f} % exceed",
     }
-    units = {"T": "", "P": "", "gap": "at least [µeV]"}
+    units = {"T": "", "P": "", "gap": "µeV"}
     for kind, (grid, values, options) in shown.items():
         mu, B = grid
         image = _map(panels[kind], mu, B, values, **options)

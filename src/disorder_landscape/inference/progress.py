@@ -27,7 +27,8 @@ WIRES_PER_UNKNOWN = 12, 60
 surely right, and otherwise. Means of inversions of 5+1 and ten components with noise of 0.001 and
 of 0.01 e²/h; single ones take a third to twice that. With 0.05 e²/h they take twice that, too."""
 WIRES_OF_LANDSCAPE = 700
-"""Of a whole landscape, however many unknowns it has, where the first way down leads to it."""
+"""The same of a whole landscape, however many unknowns it has; three times that if its search has
+to begin anew."""
 
 
 def announce_inference(observation: Observation) -> None:

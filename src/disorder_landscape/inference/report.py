@@ -22,7 +22,7 @@ OTHERWISE = 1.25
 """… and that noise is not the stated one if they are more or less than it by this factor."""
 
 SURE = 0.95
-"""A wire is topological if it is so with more than this probability."""
+"""What at least this share of the samples has is taken for sure."""
 
 NOT_TO_BE_TRUSTED = "so neither error bars nor P(topological) are to be trusted"
 
@@ -122,14 +122,22 @@ def verdict_sentence(result: xr.Dataset) -> str:
 
 
 def topological_sentence(result: xr.Dataset) -> str:
-    """Return how much of the measured range is topological, as a sentence."""
+    """Return in how much of the measured range T_IV is negative, as a sentence."""
     P = result["P_topological"].to_numpy()
-    surely, perhaps = (100 * float((P > least).mean()) for least in (SURE, 1 - SURE))
+    surely, perhaps = 100 * float((P >= SURE).mean()), 100 * float((P > 1 - SURE).mean())
     measured = f"the measured range of {'gate' if 'gate' in result.dims else 'µ'} and B"
+    meaning = "topological where there is a gap"
     if perhaps == 0:
-        return f"It is topological nowhere in {measured}."
-    more = f", and may be in {perhaps - surely:.0f} % more" if perhaps - surely >= 1 else ""
-    return f"It is topological in {surely:.0f} % of {measured} (P > {SURE:g}){more}."
+        return f"T_IV < 0, {meaning}, nowhere in {measured}."
+    share = f"{surely:.0f}" if surely == 0 or surely >= 1 else "less than 1"
+    more = f", and perhaps in {perhaps - surely:.0f} % more" if perhaps - surely >= 1 else ""
+    return f"T_IV < 0, {meaning}, in {share} % of {measured} (P ≥ {SURE:g}){more}."
+
+
+def sentences_on(result: xr.Dataset) -> list[str]:
+    """Return the verdict as a sentence, and where the wire is topological, if converged."""
+    converged = result.attrs["verdict"] == CONVERGED
+    return [verdict_sentence(result), *([topological_sentence(result)] if converged else [])]
 
 
 def not_fixed_lines(result: xr.Dataset) -> list[str]:

@@ -31,9 +31,10 @@ WIDENING = 0.26
 standard deviation, where n is the number of unknowns. (Of a normal posterior's samples, so
 weighted, 90 % are effective, whatever n is.) …"""
 NORMAL, LEAST_NORMAL = 0.97, 0.3
-"""… The posterior is Laplace's approximation if samples of this, weighted by the exact posterior,
-have an effective sample size that is NORMALⁿ of them, or this share at least. (Of a normal
-posterior that is wider by 10 % in seven directions it is 0.86, by 20 % 0.47.)"""
+"""… The posterior is taken for Laplace's approximation if samples of the latter, weighted by the
+exact posterior, are effective to a share of at least NORMALⁿ, and never less than LEAST_NORMAL:
+each unknown may make a little worse what many make much worse. (Of a normal posterior that is wider
+by 10 % in seven directions it is 0.86, by 20 % 0.47.)"""
 NEGLIGIBLE = 1e-3
 """Optima with less than this share of the posterior are left out."""
 

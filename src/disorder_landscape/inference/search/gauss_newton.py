@@ -16,7 +16,7 @@ from typing import Literal
 
 import numpy as np
 
-from disorder_landscape.inference.optimum import Optimum, fits
+from disorder_landscape.inference.optimum import Optimum, chi_square_excess, is_noise
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.observation import Observation, objective, overall_misfit
 from disorder_landscape.model.parameters import FloatArray
@@ -36,14 +36,15 @@ ROUGHLY = 3.0
 """… or by less than this, where only an optimum's place or a fit is asked for."""
 CREEPING, LATELY = 0.5, 4
 """Steps that creep end, too, where no optimum is asked for: if the noise does not explain the
-misfit, and what −2 log(posterior) is above the number of data is more than this part of what it was
-so many steps ago. (Steps that arrive halve it in one or two.)"""
+misfit, and −2 log(posterior) less the number of data, which is about what noise alone makes, is
+more than this part of what it was so many steps ago. (Steps that arrive halve it in one or two.)"""
 NEAR = 0.5
 """Steps end at a known optimum if they come this near, in its standard deviations, root mean square
 over the principal axes."""
 
 Goal = Literal["optimum", "place", "fit"]
-"""Where steps end: at an optimum, near one, or as soon as the noise explains the misfit."""
+"""Where steps end: at an optimum, near one (as ROUGHLY and CREEPING say), or as soon as the noise
+explains the misfit."""
 
 
 def gauss_newton(
@@ -99,7 +100,7 @@ def gauss_newton(
         heights.append(best)
         if gained < (ROUGHLY if roughly else ENOUGH):
             break
-        explained = fits(observation, y)
+        explained = is_noise(chi_square_excess(observation, y))
         if roughly and not explained and _creep(heights, y.size):
             break
         if goal == "fit" and explained:

@@ -53,13 +53,13 @@ class Optima:
     Parameters
     ----------
     observation : Observation
-    some : Observation
+    some : Observation, optional
         The part of its data that steps use first.
     steps : callable
     """
 
     observation: Observation
-    some: Observation
+    some: Observation | None
     steps: Steps
     found: list[Optimum] = field(default_factory=list)
     starts: int = 0
@@ -99,7 +99,10 @@ class Optima:
         return self.is_settled or self.is_exhausted
 
     def start_from(self, x: FloatArray, attempt: int) -> None:
-        """Find the optimum that steps from x (unknown,) lead to."""
+        """Find the optimum that steps from x (unknown,) lead to, with some of the data first."""
+        if self.some is None:
+            self.end_at(x, attempt)
+            return
         name = self._next_name(attempt)
         known = [one for one, _ in self._on_some]
         end = self.steps(self.some, x, attempt, f"{name}.some", known, "place")
@@ -113,9 +116,16 @@ class Optima:
         to = None if leave else self._optimum_from(end.mean, attempt, name)
         self._on_some.append((near, to))
 
-    def end_at(self, x: FloatArray, attempt: int, goal: Goal = "optimum") -> None:
-        """Find the optimum that steps from x (unknown,) with all data lead to."""
-        self._optimum_from(x, attempt, self._next_name(attempt), goal)
+    def end_at(self, x: FloatArray, attempt: int, goal: Goal = "optimum") -> Optimum:
+        """Return the optimum that steps from x (unknown,) with all data lead to."""
+        return self.found[self._optimum_from(x, attempt, self._next_name(attempt), goal)]
+
+    def refine(self, attempt: int) -> None:
+        """Go on to the best optimum itself, where steps have ended near it. This is no start."""
+        one = best(self.found)
+        end = self.steps(self.observation, one.answer.mean, attempt, "best", (), "optimum")
+        refined = replace(optimum_at(self.observation, end), found_by=one.found_by)
+        self.found[self.found.index(one)] = refined
 
     def _next_name(self, attempt: int) -> str:
         """Count a start, and return its name."""
