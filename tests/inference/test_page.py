@@ -79,7 +79,7 @@ def test_topological_shares_are_of_the_range(result):
     def said():
         return topological_sentence(result.assign(P_topological=P))
 
-    assert "nowhere in the measured range of gate and B" in said()
+    assert "nowhere in the measured gate and B" in said()
     P[: P.shape[0] // 2] = 0.5
     assert "in 0 % of" in said()
     assert "49 % more" in said()

@@ -205,11 +205,12 @@ def _maps(
 ) -> None:
     """Show T_IV, P(topological) with the points of the data, and the gap that is sure."""
     fine = result[f"map_{measurement.axis}"].to_numpy(), result["map_B"].to_numpy()
-    data, most = (measurement.mu, measurement.B), 1e3 * float(result["gap"].max())
+    data, gap = (measurement.mu, measurement.B), 1e3 * sure_gap(result)
+    most = gap.max() or 1e3 * float(result["gap"].max())
     shown: dict[str, tuple[Any, Any, dict[str, Any]]] = {
         "T": (fine, result["T_IV"][0], {"cmap": "RdBu", "vmin": -1, "vmax": 1}),
         "P": (fine, result["P_topological"], {"cmap": "Purples", "vmin": 0, "vmax": 1}),
-        "gap": (data, 1e3 * sure_gap(result), {"cmap": "cividis", "vmin": 0, "vmax": most}),
+        "gap": (data, gap, {"cmap": "cividis", "vmin": 0, "vmax": most}),
     }
     titles = {
         "T": r"$T_\mathrm{IV}$ of the mean",

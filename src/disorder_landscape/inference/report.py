@@ -112,8 +112,8 @@ def verdict_sentence(result: xr.Dataset) -> str:
     """Return the verdict as a sentence."""
     verdict = result.attrs["verdict"]
     if verdict == CONVERGED:
-        known = f"V is known to {error_bar(result):.2g} µeV (root mean square over the sites)"
-        return f"Converged: this wire explains the data within their noise, and {known}."
+        known = f"V is known to {error_bar(result):.2g} µeV (r.m.s. over the sites)"
+        return f"Converged: this wire explains the data within their noise; {known}."
     reason = {
         NOT_CONVERGED: "a better answer may have been missed",
         NOT_DESCRIBED: "no wire of this model explains the data within their noise",
@@ -125,12 +125,12 @@ def topological_sentence(result: xr.Dataset) -> str:
     """Return in how much of the measured range T_IV is negative, as a sentence."""
     P = result["P_topological"].to_numpy()
     surely, perhaps = 100 * float((P >= SURE).mean()), 100 * float((P > 1 - SURE).mean())
-    measured = f"the measured range of {'gate' if 'gate' in result.dims else 'µ'} and B"
+    measured = f"the measured {'gate' if 'gate' in result.dims else 'µ'} and B"
     meaning = "topological where there is a gap"
     if perhaps == 0:
         return f"T_IV < 0, {meaning}, nowhere in {measured}."
     share = f"{surely:.0f}" if surely == 0 or surely >= 1 else "less than 1"
-    more = f", and perhaps in {perhaps - surely:.0f} % more" if perhaps - surely >= 1 else ""
+    more = f", perhaps in {perhaps - surely:.0f} % more" if perhaps - surely >= 1 else ""
     return f"T_IV < 0, {meaning}, in {share} % of {measured} (P ≥ {SURE:g}){more}."
 
 
