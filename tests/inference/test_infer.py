@@ -408,7 +408,7 @@ def test_noise_that_is_other_than_stated_is_noticed(misfit, says):
 
 def test_the_summary_says_it_all(inferred):
     failed = inferred.assign_attrs(verdict=NOT_DESCRIBED)
-    assert "neither the error bars below" in summary(failed)[1]
+    assert "neither error bars nor P(topological)" in summary(failed)[1]
     lines = "\n".join(summary(inferred))
     assert "neither" not in lines
     assert "verdict         converged" in lines
