@@ -22,7 +22,7 @@ from disorder_landscape.inference.verdict import is_surely_right
 USUAL_STEPS = {ROUND: 4, GAUSS_NEWTON: 8, IMPORTANCE_SAMPLING: 3, MAPS: 1}
 """How many most inversions take, of about one length: what the time left is estimated from."""
 
-WIRES_PER_UNKNOWN = 12, 60
+WIRES_PER_UNKNOWN = 12, 35
 """How many times all data of a wire are simulated for each unknown: where an answer that fits is
 surely right, and otherwise. Means of inversions of 5+1 and ten components with noise of 0.001 and
 of 0.01 e²/h; single ones take a third to twice that. With 0.05 e²/h they take twice that, too."""
