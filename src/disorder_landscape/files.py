@@ -53,10 +53,16 @@ def replacing(path: Path) -> Iterator[Path]:
 def write_picture(path: Path, figure: Figure, **options: Any) -> None:
     """Write a figure in the format that the path's ending names; options are those of savefig."""
     # In memory first: Matplotlib complains on its own where the disk is full.
-    content = io.BytesIO()
-    figure.savefig(content, format=path.suffix.removeprefix("."), **options)
+    content = picture(figure, path.suffix.removeprefix("."), **options)
     with replacing(path) as temporary:
-        temporary.write_bytes(content.getvalue())
+        temporary.write_bytes(content)
+
+
+def picture(figure: Figure, kind: str, **options: Any) -> bytes:
+    """Return a figure in a format; options are those of savefig."""
+    content = io.BytesIO()
+    figure.savefig(content, format=kind, **options)
+    return content.getvalue()
 
 
 def unwritable(path: Path, reason: str | None) -> ArgumentError:

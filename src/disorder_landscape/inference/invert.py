@@ -112,10 +112,7 @@ def invert(
     if observation.unknowns.is_whole_landscape:
         optima, attempts = optima_of_whole_landscape(observation, steps, seed)
     else:
-        usual = usual_settings(usable_network_features(model, observation))
-        found = _optima_of_few_unknowns(
-            observation, model, steps, seed, settings or usual, progress, cache
-        )
+        found = _optima_of_few_unknowns(observation, model, steps, seed, settings, progress, cache)
         optima, attempts, rounds = found
     report = partial(_report, progress, attempts - 1, IMPORTANCE_SAMPLING)
     drawn = posterior_samples(observation, optima.found, [seed, 2**31 + 2], cache, report)
@@ -127,12 +124,13 @@ def _optima_of_few_unknowns(
     model: TrainedModel | None,
     steps: Steps,
     seed: int,
-    settings: InversionSettings,
+    settings: InversionSettings | None,
     progress: Progress,
     cache: Cache,
 ) -> tuple[Optima, int, int]:
     """Return optima of few unknowns, and how many attempts and rounds they have taken."""
     features = usable_network_features(model, observation)
+    settings = settings or usual_settings(features)
     prior, guess = observation.unknowns.prior, None
     if model is not None:
         rng = np.random.default_rng([seed, 2**31])

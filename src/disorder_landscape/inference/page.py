@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import io
 from collections.abc import Sequence
 from html import escape
 from pathlib import Path
@@ -11,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
-from disorder_landscape.files import replacing
+from disorder_landscape.files import picture, replacing
 from disorder_landscape.inference.inferred import prior_of_result
 from disorder_landscape.inference.problem.parameters import BY_NAME
 from disorder_landscape.inference.report import (
@@ -27,6 +26,8 @@ from disorder_landscape.inference.verdict import CONVERGED
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+DPI = 200
+"""Of pictures."""
 STYLE = """
 body { font: 16px/1.5 sans-serif; max-width: 60em; margin: 1em auto; padding: 0 1em; }
 img { max-width: 100%; height: auto; }
@@ -59,6 +60,7 @@ def page(result: xr.Dataset, figure: Figure) -> str:
     attrs = result.attrs
     kind = "converged" if attrs["verdict"] == CONVERGED else "doubtful"
     sentences = " ".join(sentences_on(result))
+    png = base64.b64encode(picture(figure, "png", dpi=DPI)).decode()
     parts = [
         "<!doctype html>",
         '<html lang="en"><head><meta charset="utf-8">',
@@ -66,7 +68,7 @@ def page(result: xr.Dataset, figure: Figure) -> str:
         f"<title>{escape(attrs['verdict'])}</title><style>{STYLE}</style></head><body>",
         "<h1>From a measurement to the disorder</h1>",
         f'<p class="verdict {kind}">{escape(sentences)}</p>',
-        f'<img alt="{escape(sentences)}" src="data:image/png;base64,{_png(figure)}">',
+        f'<img alt="{escape(sentences)}" src="data:image/png;base64,{png}">',
         _table("Parameters", ("", "before", "found"), _parameters(result)),
         *(f"<p>{escape(line)}</p>" for line in not_fixed_lines(result)),
         _table("Misfit", ("", "root mean square (e²/h)", "stated noise"), misfits(result)),
@@ -74,12 +76,6 @@ def page(result: xr.Dataset, figure: Figure) -> str:
         "</body></html>",
     ]
     return "\n".join(part for part in parts if part)
-
-
-def _png(figure: Figure) -> str:
-    content = io.BytesIO()
-    figure.savefig(content, format="png", dpi=200)
-    return base64.b64encode(content.getvalue()).decode()
 
 
 def _table(title: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:

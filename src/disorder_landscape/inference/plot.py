@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 from textwrap import fill
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from disorder_landscape.files import write_picture
 from disorder_landscape.inference.inferred import prior_of_result
-from disorder_landscape.inference.page import write_page
+from disorder_landscape.inference.page import DPI, write_page
 from disorder_landscape.inference.problem.distributions import Distribution
 from disorder_landscape.inference.problem.measurement import Measurement
 from disorder_landscape.inference.problem.observation import errors_variance
@@ -43,6 +43,18 @@ INTERVALS = (5, 95), (25, 75)
 """Percentiles of the samples between which V is shaded."""
 APART = np.array([-0.25, 0.25])
 """Where the pixels of a map are that has one value of µ or B alone."""
+AXIS = {"mu": r"$\mu$ [meV]"}
+"""How the measured axis is named on a map; others have their own name."""
+
+
+class Shown(NamedTuple):
+    """A map: its values on a grid of the measured axis and B, its words, and how it is drawn."""
+
+    grid: tuple[FloatArray, FloatArray]
+    values: Any
+    title: str
+    unit: str
+    options: Mapping[str, Any]
 
 
 @needs("figures")
@@ -70,7 +82,7 @@ def plot_inference(result: xr.Dataset, measurement: Measurement, path: Path) -> 
         if path.suffix == f".{PAGE}":
             write_page(result, figure, path)
         else:
-            write_picture(path, figure, dpi=200)
+            write_picture(path, figure, dpi=DPI)
 
 
 def _figure(result: xr.Dataset, measurement: Measurement) -> Figure:
@@ -185,19 +197,15 @@ def _conductances(
     norm = {"vmin": 0 if local else -largest, "vmax": largest}
     norm["cmap"] = "viridis" if local else "RdBu_r"
     std = np.sqrt(errors_variance(result.attrs["noise"][channel]))
+    grid = measurement.mu, measurement.B
+    channel_name = rf"$G_\mathrm{{{name[2:]}}}$ at {bias[at]:g} meV"
+    off, all_errors = (G - answer) / std, r"$\sigma$ of all errors"
     shown = {
-        "measured": (G, norm, "$e^2/h$"),
-        "explained": (answer, norm, "$e^2/h$"),
-        "residual": ((G - answer) / std, RESIDUAL, r"$\sigma$ of all errors"),
+        "measured": Shown(grid, G, f"{channel_name}, measured", "$e^2/h$", norm),
+        "explained": Shown(grid, answer, "explained", "$e^2/h$", norm),
+        "residual": Shown(grid, off, "measured minus explained", all_errors, RESIDUAL),
     }
-    for kind, (values, options, unit) in shown.items():
-        image = _map(panels[kind], measurement.mu, measurement.B, values, **options)
-        figure.colorbar(image, ax=panels[kind], label=unit, location="bottom", aspect=20)
-    panels["measured"].set_title(rf"$G_\mathrm{{{name[2:]}}}$ at {bias[at]:g} meV, measured")
-    panels["explained"].set_title("explained")
-    panels["residual"].set_title("measured minus explained")
-    for kind in ("explained", "residual"):
-        panels[kind].set_ylabel("")
+    _row_of_maps(figure, panels, shown, measurement.axis)
 
 
 def _maps(
@@ -207,29 +215,29 @@ def _maps(
     fine = result[f"map_{measurement.axis}"].to_numpy(), result["map_B"].to_numpy()
     data, gap = (measurement.mu, measurement.B), 1e3 * sure_gap(result)
     most = gap.max() or 1e3 * float(result["gap"].max())
-    shown: dict[str, tuple[Any, Any, dict[str, Any]]] = {
-        "T": (fine, result["T_IV"][0], {"cmap": "RdBu", "vmin": -1, "vmax": 1}),
-        "P": (fine, result["P_topological"], {"cmap": "Purples", "vmin": 0, "vmax": 1}),
-        "gap": (data, gap, {"cmap": "cividis", "vmin": 0, "vmax": most}),
+    in_T, in_P = {"cmap": "RdBu", "vmin": -1, "vmax": 1}, {"cmap": "Purples", "vmin": 0, "vmax": 1}
+    in_gap = {"cmap": "cividis", "vmin": 0, "vmax": most}
+    P, exceed = result["P_topological"], f"gap that {100 * SURE:.0f} % exceed"
+    shown = {
+        "T": Shown(fine, result["T_IV"][0], r"$T_\mathrm{IV}$ of the mean", "", in_T),
+        "P": Shown(fine, P, "$P$(topological); dots: data", "", in_P),
+        "gap": Shown(data, gap, exceed, "µeV", in_gap),
     }
-    titles = {
-        "T": r"$T_\mathrm{IV}$ of the mean",
-        "P": "$P$(topological); dots: data",
-        "gap": f"gap that {100 * SURE:.0f} % exceed",
-    }
-    units = {"T": "", "P": "", "gap": "µeV"}
-    for kind, (grid, values, options) in shown.items():
-        mu, B = grid
-        image = _map(panels[kind], mu, B, values, **options)
-        figure.colorbar(image, ax=panels[kind], label=units[kind], location="bottom", aspect=20)
-        panels[kind].set_title(titles[kind])
+    _row_of_maps(figure, panels, shown, measurement.axis)
     at_B, at_mu = np.meshgrid(measurement.B, measurement.mu)
     panels["P"].plot(at_B.ravel(), at_mu.ravel(), ".", color="0.4", ms=0.6)
-    for kind in ("P", "gap"):
-        panels[kind].set_ylabel("")
-    if measurement.axis != "mu":
-        for kind in ("measured", "T"):
-            panels[kind].set_ylabel(measurement.axis)
+
+
+def _row_of_maps(
+    figure: Any, panels: Mapping[str, Any], shown: Mapping[str, Shown], axis: str
+) -> None:
+    """Draw maps side by side, with the measured axis named on the left."""
+    for column, (kind, one) in enumerate(shown.items()):
+        panel = panels[kind]
+        image = _map(panel, *one.grid, one.values, **one.options)
+        panel.set_title(one.title)
+        panel.set_ylabel("" if column else AXIS.get(axis, axis))
+        figure.colorbar(image, ax=panel, label=one.unit, location="bottom", aspect=20)
 
 
 def sure_gap(result: xr.Dataset) -> FloatArray:
@@ -240,7 +248,7 @@ def sure_gap(result: xr.Dataset) -> FloatArray:
 
 
 def _map(panel: Any, mu: FloatArray, B: FloatArray, values: Any, **options: Any) -> Any:
-    panel.set(xlabel="$B$ [T]", ylabel=r"$\mu$ [meV]")
+    panel.set_xlabel("$B$ [T]")
     if mu.size == 1:  # as wide as the panel
         panel.set_yticks(mu)
         mu, values = mu + APART, np.ma.repeat(values, 2, axis=0)

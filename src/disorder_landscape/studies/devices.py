@@ -122,7 +122,7 @@ def drawn_device(group: Devices, task: Task) -> tuple[Device, FloatArray]:
     unknowns, given = group.unknowns, group.unknowns.given
     x = rng.normal(size=len(unknowns.names))
     device = unknowns.devices(x[None], group.grid)[0]
-    if given.components is not None:
+    if not unknowns.is_whole_landscape:
         return device, x
     disorder = (given.correlation_length, "sum", given.amplitude)
     V = smooth_noise(rng, given.sites, *disorder)

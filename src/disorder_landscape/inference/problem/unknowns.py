@@ -66,7 +66,7 @@ class Unknowns:
         to_sites = np.zeros((p.sites, count + 1))
         to_sites[:, :-1] = potential_from_components(np.eye(count), p.sites).T
         to_sites[:, -1] = 1.0
-        if p.components is not None:
+        if not self.is_whole_landscape:
             triangle = np.linalg.cholesky(covariance)
             return np.asarray(to_sites @ triangle), np.asarray(triangle)
         variance, axes = np.linalg.eigh(to_sites @ covariance @ to_sites.T)

@@ -100,11 +100,11 @@ def gauss_newton(
         heights.append(best)
         if gained < (ROUGHLY if roughly else ENOUGH):
             break
-        explained = is_noise(chi_square_excess(observation, y))
-        if roughly and not explained and _creep(heights, y.size):
-            break
-        if goal == "fit" and explained:
-            break
+        if roughly:
+            explained = is_noise(chi_square_excess(observation, y))
+            ends = goal == "fit" if explained else _creep(heights, y.size)
+            if ends:
+                break
         for one in known:
             if best > one.objective and is_near(one, x):
                 return one.answer
@@ -115,8 +115,9 @@ def gauss_newton(
 
 def _creep(heights: Sequence[float], data: int) -> bool:
     """Return whether steps through these values of −2 log(posterior) lead nowhere."""
-    before, now = heights[max(0, len(heights) - 1 - LATELY)], heights[-1]
-    return len(heights) > LATELY and now - data > CREEPING * (before - data)
+    if len(heights) <= LATELY:
+        return False
+    return heights[-1] - data > CREEPING * (heights[-1 - LATELY] - data)
 
 
 def is_near(optimum: Optimum, x: FloatArray) -> bool:

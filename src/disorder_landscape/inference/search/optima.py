@@ -13,13 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
-from disorder_landscape.inference.optimum import (
-    Optimum,
-    best,
-    optimum_at,
-    same_answer,
-    unseen,
-)
+from disorder_landscape.inference.optimum import Optimum, best, optimum_at, same_answer, unseen
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.search.gauss_newton import Goal, is_near
@@ -53,13 +47,13 @@ class Optima:
     Parameters
     ----------
     observation : Observation
-    some : Observation, optional
+    some : Observation
         The part of its data that steps use first.
     steps : callable
     """
 
     observation: Observation
-    some: Observation | None
+    some: Observation
     steps: Steps
     found: list[Optimum] = field(default_factory=list)
     starts: int = 0
@@ -100,9 +94,6 @@ class Optima:
 
     def start_from(self, x: FloatArray, attempt: int) -> None:
         """Find the optimum that steps from x (unknown,) lead to, with some of the data first."""
-        if self.some is None:
-            self.end_at(x, attempt)
-            return
         name = self._next_name(attempt)
         known = [one for one, _ in self._on_some]
         end = self.steps(self.some, x, attempt, f"{name}.some", known, "place")

@@ -37,14 +37,14 @@ def optima_of_whole_landscape(
 ) -> tuple[Optima, int]:
     """Return the optima to which steps over lower and lower μ lead, and how many ways down."""
     parts = observation.on_highest_lines(HIGHEST)
-    optima = Optima(observation, None, steps)
+    optima = Optima(observation, parts[-1], steps)
     prior, rng = observation.unknowns.prior, np.random.default_rng([seed, 2**31 + 3])
     few, more = STARTS
     for way in range(WAYS_DOWN):
         x = prior.mean if way == 0 else prior.draw(rng, 2)[0]
         of_way: list[Optimum] = []
         while not optima.is_done and len(of_way) < (more if optima.fits else few):
-            for k, part in enumerate(parts[-1:] if of_way else parts):
+            for k, part in enumerate([optima.some] if of_way else parts):
                 x = steps(part, x, way, f"{way}.{len(of_way)}.highest.{k}", (), "fit").mean
             of_way.append(optima.end_at(x, way, "place"))
             near = Gaussian(best(of_way).answer.mean, NEAR_BEST**2 * prior.covariance)
