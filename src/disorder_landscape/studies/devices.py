@@ -25,9 +25,8 @@ from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.problem.unknowns import Device, Unknowns
 from disorder_landscape.model.disorder import mean_reduction, smooth_noise
 from disorder_landscape.model.parameters import B_MAX, BIAS, TEMPERATURE, FloatArray, Nanowire
-from disorder_landscape.solver.quadrature import thermal_quadrature
 from disorder_landscape.studies.calibration import coverage, joint_coverage
-from disorder_landscape.studies.fresh_wires import SEED, Noise, inverted
+from disorder_landscape.studies.fresh_wires import SEED, Noise, exact_conductances, inverted
 from disorder_landscape.studies.rows import Row, rounded
 from disorder_landscape.studies.study import Derived, Part, Place, Plan
 
@@ -134,12 +133,11 @@ def drawn_device(group: Devices, task: Task) -> tuple[Device, FloatArray]:
 
 def measured_device(device: Device, group: Devices, task: Task) -> Observation:
     """Return the measurement of a device, with errors."""
-    setup, grid = device.setup, group.grid
-    exact = thermal_quadrature([device.wire], setup.mu, grid.B, setup.bias, setup.temperature)
     rng = np.random.default_rng([SEED, zlib.crc32(task.name.encode()), task.index, 1])
-    G = exact.conductance[0]
-    G = G + task.noise * rng.normal(size=G.shape)
-    return Observation(replace(grid, G=G), group.unknowns, noise_of_channels(task.noise))
+    setup, grid = device.setup, group.grid
+    G = exact_conductances(device.wire, setup.mu, grid.B, setup.bias, setup.temperature)
+    measurement = replace(grid, G=G + task.noise * rng.normal(size=G.shape))
+    return Observation(measurement, group.unknowns, noise_of_channels(task.noise))
 
 
 def device_row(task: Task, group: Devices) -> dict[str, object]:

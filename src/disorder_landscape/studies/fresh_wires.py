@@ -28,7 +28,8 @@ from disorder_landscape.inference.problem.observation import Observation, noise_
 from disorder_landscape.inference.problem.unknowns import unknowns_of
 from disorder_landscape.inference.verdict import verdict
 from disorder_landscape.learning.model import TrainedModel, load_model
-from disorder_landscape.model.parameters import FloatArray
+from disorder_landscape.model.parameters import FloatArray, Nanowire
+from disorder_landscape.solver.quadrature import thermal_quadrature
 from disorder_landscape.studies.study import Part, Plan
 
 SEED = 2026
@@ -109,9 +110,26 @@ def measured_wire(
     unknowns = unknowns_of(config)
     truth = unknowns.of_realization(realization(config, index))
     settings = empty_measurement(config)
-    errors = noise_of_channels(noise)
-    G = Observation(settings, unknowns, errors).conductances(truth[None])[0]
+    G, errors = _conductances_of_wire(config, index), noise_of_channels(noise)
     return Observation(measured(settings, G, noise, index), unknowns, errors), truth
+
+
+@lru_cache(maxsize=1)
+def _conductances_of_wire(config: DatasetConfig, index: int) -> FloatArray:
+    """Return those of a wire, which a study measures with one noise after the other."""
+    wire, setup = realization(config, index).wire, empty_measurement(config)
+    return exact_conductances(wire, setup.mu, setup.B, setup.bias, setup.temperature)
+
+
+def exact_conductances(
+    wire: Nanowire, mu: FloatArray, B: FloatArray, bias: FloatArray, temperature: float
+) -> FloatArray:
+    """Return conductances in e²/h, shape (mu, B, bias, channel).
+
+    They are averaged by quadrature, which is another route than the inversion's own.
+    """
+    G: FloatArray = thermal_quadrature([wire], mu, B, bias, temperature).conductance[0]
+    return G
 
 
 def measured(
