@@ -6,6 +6,10 @@
 //
 // and as Q_ab = G_·b m G_a· is of rank two, Tr[A Q_ab] is the sum over both q of yᵀ A u, y = G_aq· and u = G_·b m; at a
 // pole Q_ab is of rank one.
+//
+// Where levels are broadened by Γ_d, what comes in and does not go back is N − P_aa = −2 Im Tr Γ_a G_aa − p_aa, in which the
+// first term has no pole above the real axis.  P_aa − N changes as p_aa does with Γ_a Ḡ_aa Γ_a − iΓ_a for m, and −2i G_aa
+// beside what ∂Γ_a is multiplied with.
 #pragma once
 
 #include "columns.hpp"
@@ -48,7 +52,8 @@ struct DriveAt {
     C m[2][2];
     C through_leads[LEAD_CHANGES];
 
-    void fill(const Ends<R>& G, const LeadsAt<R>& leads, int a, int b) {
+    // `linear` is 1 where P_aa − N is meant for a = b, on the line; of a residue it is 0.
+    void fill(const Ends<R>& G, const LeadsAt<R>& leads, int a, int b, double linear = 0.0) {
         C t[2][2], r[2][2], after[2][2], before[2][2];  // Γ_b Ḡ_ba, Ḡ_ba Γ_a, G_ab Γ_b Ḡ_ba and Ḡ_ba Γ_a G_ab
         auto H = [&](int p, int q) { return leads.conjugate[2 * b + p][2 * a + q]; };
         const auto &of_a = leads.gamma[a], &of_b = leads.gamma[b];
@@ -60,6 +65,12 @@ struct DriveAt {
                 after[p][q] = G(2 * a + p, 2 * b) * t[0][q] + G(2 * a + p, 2 * b + 1) * t[1][q];
                 before[p][q] = r[p][0] * G(2 * a, 2 * b + q) + r[p][1] * G(2 * a + 1, 2 * b + q);
             }
+        if (linear != 0.0 && a == b)
+            for (int p = 0; p < 2; ++p)
+                for (int q = 0; q < 2; ++q) {
+                    const C gamma = of_a[p + q], own = G(2 * a + p, 2 * a + q) * R(2.0);
+                    m[p][q] = m[p][q] + C(gamma.im, -gamma.re), after[p][q] = after[p][q] + C(own.im, -own.re);
+                }
         C Y[CHANNELS][3];  // of Q_ab at the ends, twice, the two entries off the diagonal together
         for (int c = 0; c < CHANNELS; ++c) {
             C block[2][2];

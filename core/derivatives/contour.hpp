@@ -21,6 +21,10 @@
 // same rest.  λ follows from both at the ends, and multiplies each column of Q_ab.
 //
 // Particle–hole symmetry makes f at −z* that of z with electrons and holes exchanged, so only Re z ≥ 0 is summed.
+//
+// Where the levels of wire and parent are broadened by Γ_d, wire and parent are at z + iΓ_d in G and at z − iΓ_d in Ḡ, the
+// leads at z.  The model and its poles are functions of the energy of the wire (resonances.hpp), the points ones of that of the
+// leads.
 #pragma once
 
 #include <numbers>
@@ -110,9 +114,10 @@ inline double isolation(const Resonances& of, int p) {
 }
 
 // A pole's point; own is the model's G there.
-inline ContourPoint point_of_pole(const Pole& pole, const EndMatrix& own, const Line& line, const Leads& leads, double hop) {
-    const Amplitude z = std::conj(pole.z);
-    EndMatrix S = leads.inverse.at(pole.z), gamma = leads.gamma.at(z), columns{};  // v̄ and Γv̄
+inline ContourPoint point_of_pole(const Pole& pole, const EndMatrix& own, const Line& line, const Leads& leads, double hop,
+                                  Amplitude broadening) {
+    const Amplitude at = pole.z - broadening, z = std::conj(at);
+    EndMatrix S = leads.inverse.at(pole.z), gamma = leads.gamma.at(z + broadening), columns{};  // v̄ and Γv̄
     Amplitude v[8], width = 0.0;
     for (int k = 0; k < 8; ++k) {
         v[k] = 0.0;
@@ -125,23 +130,25 @@ inline ContourPoint point_of_pole(const Pole& pole, const EndMatrix& own, const 
     for (int k = 0; k < 8; ++k) width += columns(k, 1) * v[k];
     columns = from_chiral_rows(columns);
     ContourPoint point{ContourPoint::POLE_OF_MODEL, z, line.weight_of_pole(z), true, {}};
-    point.pole = pole.z, point.own = own;
+    point.pole = at, point.own = own;
     for (int k = 0; k < 8; ++k) point.y[k] = columns(k, 1), point.v[k] = std::sqrt(hop) * columns(k, 0);
     point.set_residue();
-    point.scale = (z - pole.z) / (width * width * hop);
+    point.scale = (z - at) / (width * width * hop);
     return point;
 }
 
 }  // namespace detail
 
-// The points of one set.
-inline std::vector<ContourPoint> contour(const EnergyPlan& plan, double hop, const Resonances& poles, const Leads& leads, Batch& b) {
+// The points of one set, of a wire whose levels are broadened by so much.
+inline std::vector<ContourPoint> contour(const EnergyPlan& plan, double hop, const Resonances& poles, const Leads& leads, double width,
+                                         Batch& b) {
     const Line line(plan.kT);
+    const Amplitude broadening(0, width);
     std::vector<ContourPoint> points;
     std::vector<int> seen;
     for (int n = 0; n < int(poles.order.size()); ++n) {
         Amplitude z = std::conj(poles.poles[poles.order[n]].z);
-        if (z.imag() > NARROWEST && line.sees(z) && z.real() < line.end(plan)) seen.push_back(n);
+        if (z.imag() > NARROWEST && line.sees(z + broadening) && z.real() < line.end(plan)) seen.push_back(n);
     }
     // Call use(k, G at the k-th energy) for so many energies.
     auto for_green = [&](int count, const Cubic& inverse, auto energy, auto use) {
@@ -152,13 +159,14 @@ inline std::vector<ContourPoint> contour(const EnergyPlan& plan, double hop, con
         }
     };
     auto pole = [&](int k) -> const Pole& { return poles.poles[poles.order[seen[k]]]; };
-    for_green(int(seen.size()), leads.inverse, [&](int k) { return std::conj(pole(k).z); }, [&](int k, const EndMatrix& G) {
-        points.push_back(detail::point_of_pole(pole(k), G, line, leads, hop));
+    auto above = [&](int k) { return std::conj(pole(k).z) + 2.0 * broadening; };
+    for_green(int(seen.size()), leads.inverse, above, [&](int k, const EndMatrix& G) {
+        points.push_back(detail::point_of_pole(pole(k), G, line, leads, hop, broadening));
         points.back().mirrored = seen[k] < poles.paired;
         points.back().isolation = detail::isolation(poles, poles.order[seen[k]]);
     });
     int count = int(std::ceil(line.end(plan) / line.step));
-    for_green(count, leads.conjugate, [&](int k) { return line.at(k); }, [&](int k, const EndMatrix& G) {
+    for_green(count, leads.conjugate, [&](int k) { return line.at(k) - broadening; }, [&](int k, const EndMatrix& G) {
         points.push_back({ContourPoint::ON_LINE, line.at(k), line.step, true, G});
     });
     return points;

@@ -16,7 +16,8 @@ struct GradientRoom {
     std::vector<PointLanes::R> others;  // (BY_ENERGY + 1, bias, conductance)
 };
 
-// Up to REGISTER points of one set.
+// Up to REGISTER points of one set: what they add to the derivatives of COUNT probabilities.
+template <int COUNT>
 class PointsOfSet {
     using R = PointLanes::R;
     using C = PointLanes::C;
@@ -30,10 +31,10 @@ class PointsOfSet {
         C plus = C(0.0), minus = C(0.0);  // with K_V and K_−V
     };
     std::vector<Weights> kernel;  // (bias,), zero where there is no point
-    DriveAt<R> drives[PROBABILITIES];
-    SiteSums<R> sums[PROBABILITIES];
+    DriveAt<R> drives[COUNT];
+    SiteSums<R> sums[COUNT];
 
-    // Re of the weights times the conductances that six probabilities make.
+    // Re of the weights times the conductances that the probabilities make.
     static CORE_INLINE void add(const Conductances<C>& G, const Weights& w, double sign_of_minus, R* to) {
 #pragma GCC unroll 4
         for (int k = 0; k < 4; ++k) {
@@ -42,7 +43,7 @@ class PointsOfSet {
             to[k] = to[k] + w.plus.re * up.re - w.plus.im * up.im + of_minus * sign_of_minus;
         }
     }
-    void add_to_others(int change, const C (&of)[PROBABILITIES], double sign_of_minus = 1.0) const {
+    void add_to_others(int change, const C (&of)[COUNT], double sign_of_minus = 1.0) const {
         Conductances<C> G = conductances_of(of);
         for (size_t v = 0; v < kernel.size(); ++v)
             add(G, kernel[v], sign_of_minus, &room.others[(change * kernel.size() + v) * 4]);
@@ -68,19 +69,19 @@ public:
         }
         auto meet = [&](Ends<R> G) {
             C scale = model_at_poles(G);
-            for (int k = 0; k < PROBABILITIES; ++k) {
-                drives[k].fill(G, at.leads, FROM[k], TO[k]);
+            for (int k = 0; k < COUNT; ++k) {
+                drives[k].fill(G, at.leads, FROM[k], TO[k], 1.0);
                 for (auto& row : drives[k].m)
                     for (auto& entry : row) entry = entry * (scale * scale);
             }
         };
         auto use = [&](int n, const Block4<C>& P, const Block4<C>& Q) {
-            C wave[CHANNELS][2][4], tau_z[PROBABILITIES];
+            C wave[CHANNELS][2][4], tau_z[COUNT];
             for (int c = 0; c < 2; ++c)
                 for (int q = 0; q < 2; ++q)
                     for (int i = 0; i < 4; ++i) wave[c][q][i] = P(i, 2 * c + q), wave[2 + c][q][i] = Q(i, 2 * c + q);
-#pragma GCC unroll 6
-            for (int k = 0; k < PROBABILITIES; ++k) {
+#pragma GCC unroll 10
+            for (int k = 0; k < COUNT; ++k) {
                 C u[2][4];
                 const auto& m = drives[k].m;
                 const auto& to = wave[TO[k]];
@@ -105,24 +106,24 @@ private:
                     C driven = at.leads.gamma[c][p] * at.leads.v[2 * c] + at.leads.gamma[c][p + 1] * at.leads.v[2 * c + 1];
                     f[c][p] = driven * scale;
                 }
-            for (int k = 0; k < PROBABILITIES; ++k) drives[k].fill(G, at.leads, FROM[k], TO[k]);
+            for (int k = 0; k < COUNT; ++k) drives[k].fill(G, at.leads, FROM[k], TO[k]);
         };
         auto use = [&](int n, const Block4<C>& P, const Block4<C>& Q) {
-            C x[CHANNELS][1][4], tau_z[PROBABILITIES];
+            C x[CHANNELS][1][4], tau_z[COUNT];
             for (int c = 0; c < 2; ++c)
                 for (int i = 0; i < 4; ++i) {
                     x[c][0][i] = P(i, 2 * c) * f[c][0] + P(i, 2 * c + 1) * f[c][1];
                     x[2 + c][0][i] = Q(i, 2 * c) * f[2 + c][0] + Q(i, 2 * c + 1) * f[2 + c][1];
                 }
-#pragma GCC unroll 6
-            for (int k = 0; k < PROBABILITIES; ++k) tau_z[k] = add_site<1, R>(field.frames[n], x[TO[k]], x[FROM[k]], sums[k]);
+#pragma GCC unroll 10
+            for (int k = 0; k < COUNT; ++k) tau_z[k] = add_site<1, R>(field.frames[n], x[TO[k]], x[FROM[k]], sums[k]);
             add_by_V(n, tau_z);
         };
         for_all_columns<R>(view(field.wire), at.terms, at.leads.sigma, room.sites, meet, use);
         add_changes();
     }
 
-    CORE_INLINE void add_by_V(int n, const C (&tau_z)[PROBABILITIES]) const {
+    CORE_INLINE void add_by_V(int n, const C (&tau_z)[COUNT]) const {
         Conductances<C> G = conductances_of(tau_z);
         R* to = &room.by_V[size_t(n) * kernel.size() * 4];
         for (size_t v = 0; v < kernel.size(); ++v) add(G, kernel[v], 1.0, to + 4 * v);
@@ -146,10 +147,10 @@ private:
 
     // All but what the derivatives by V say.
     void add_changes() const {
-        C by[BY_ENERGY + 1][PROBABILITIES];
+        C by[BY_ENERGY + 1][COUNT];
         double per_meV = 1 / field.hop;
         auto minus_twice = [](C x) { return -(x + x); };
-        for (int k = 0; k < PROBABILITIES; ++k) {
+        for (int k = 0; k < COUNT; ++k) {
             const SiteSums<R>& s = sums[k];
             const auto& leads_do = drives[k].through_leads;
             auto pairing = [&](const C(&by)[2]) { return minus_twice(by[0] * s.one + by[1] * s.tau_x); };
@@ -160,9 +161,12 @@ private:
             by[BY_GAMMA][k] = pairing(at.by_gamma);
             by[BY_DELTA0][k] = pairing(at.by_delta0);
             by[BY_LEAD_ZEEMAN][k] = leads_do[LEAD_ZEEMAN];
-            by[BY_ENERGY][k] = leads_do[LEAD_ENERGY] + pairing(at.by_energy);
+            C of_wire = pairing(at.by_energy);
+            by[BY_DISSIPATION][k] = C(-of_wire.im, of_wire.re);
+            by[BY_ENERGY][k] = leads_do[LEAD_ENERGY] + of_wire;
         }
-        for (int change = BY_ZEEMAN; change < BY_ENERGY; ++change) add_to_others(change, by[change]);
+        for (int change = BY_ZEEMAN; change < BY_ENERGY; ++change)
+            if (change != BY_DISSIPATION || COUNT == WITH_RETURNS) add_to_others(change, by[change]);
         add_to_others(BY_ENERGY, by[BY_ENERGY], -1.0);  // p(−ω) has the slope of the other sign
     }
 };

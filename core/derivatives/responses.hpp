@@ -14,8 +14,10 @@
 
 namespace core {
 
-// The channel sets of the six probabilities.
-constexpr int PROBABILITIES = 6, FROM[6] = {0, 2, 0, 1, 0, 1}, TO[6] = {1, 3, 2, 3, 3, 2};
+// The channel sets of the six probabilities, and of what goes back into the channels from which it comes: four more, which
+// count where the wire or its parent absorbs.
+constexpr int PROBABILITIES = 6, WITH_RETURNS = 10;
+constexpr int FROM[WITH_RETURNS] = {0, 2, 0, 1, 0, 1, 0, 1, 2, 3}, TO[WITH_RETURNS] = {1, 3, 2, 3, 3, 2, 0, 1, 2, 3};
 
 template <class R>
 CORE_INLINE Conductances<R> conductances_of(const R (&p)[PROBABILITIES]) {
@@ -23,6 +25,15 @@ CORE_INLINE Conductances<R> conductances_of(const R (&p)[PROBABILITIES]) {
     for (int a = 0; a < 4; ++a) P[a][a] = 0.0;
     for (int k = 0; k < PROBABILITIES; ++k) P[FROM[k]][TO[k]] = P[TO[k]][FROM[k]] = p[k];
     return lossless_conductances(P);
+}
+
+// The same, with P − N of each channel set after the six.
+template <class R>
+CORE_INLINE Conductances<R> conductances_of(const R (&p)[WITH_RETURNS]) {
+    R P[4][4], net[4];
+    for (int k = 0; k < PROBABILITIES; ++k) P[FROM[k]][TO[k]] = P[TO[k]][FROM[k]] = p[k];
+    for (int a = 0; a < 4; ++a) net[a] = -p[PROBABILITIES + a];
+    return conductances(P, net);
 }
 
 // The derivatives of both leads' Σ.

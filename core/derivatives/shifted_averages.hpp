@@ -6,9 +6,10 @@
 namespace core {
 
 // The derivatives that are not those by V: by μ, by V_Z of the wire alone, by α of wire and leads, by γ, Δ₀, by V_Z of
-// the leads alone, by the bias as by all energies of wire and leads, and, through the kernel, by the bias and by kT.
-enum Change { BY_MU, BY_ZEEMAN, BY_ALPHA, BY_GAMMA, BY_DELTA0, BY_LEAD_ZEEMAN, BY_ENERGY, BY_BIAS, BY_KT };
-constexpr int CHANGES = 9, THROUGH_KERNEL = 2;
+// the leads alone, by the broadening of the levels where there is any, by the bias as by all energies of wire and leads, and,
+// through the kernel, by the bias and by kT.
+enum Change { BY_MU, BY_ZEEMAN, BY_ALPHA, BY_GAMMA, BY_DELTA0, BY_LEAD_ZEEMAN, BY_DISSIPATION, BY_ENERGY, BY_BIAS, BY_KT };
+constexpr int CHANGES = 10, THROUGH_KERNEL = 2;
 constexpr double SHIFT = 2e-3;  // in kT: of bias and kT to either side, for the difference of closed forms
 
 // What the closed form of sets of so many nodes takes for the derivatives by the bias and by kT.

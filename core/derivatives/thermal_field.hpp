@@ -71,7 +71,7 @@ struct PointLanes {
     PointLanes(const GradientField& field, double mu, const ContourPoint* points, int count) {
         for (int l = 0; l < REGISTER; ++l) {
             const ContourPoint& at = points[std::min(l, count - 1)];
-            PairingChanges pairing(field.of, at.z);
+            PairingChanges pairing(field.of, at.z + Amplitude(0, field.of.dissipation));
             Batch::set(terms.kinetic, l, (2 * field.of.hopping - mu) / field.hop);
             Batch::set(terms.normal, l, pairing.normal / field.hop), Batch::set(terms.anomalous, l, pairing.anomalous / field.hop);
             for (int k = 0; k < 2; ++k) {

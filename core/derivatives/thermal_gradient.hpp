@@ -1,8 +1,7 @@
 // The conductances at a finite temperature and their derivatives by every site's V and by the parameters.
 //
 // The levels and poles of a set are those of thermal/conductance.hpp; the sums are explained in contour.hpp and
-// answers.hpp.  At each point all six probabilities are differentiated, and all biases share that: they enter by the
-// kernel alone.  The derivative by the bias is found in two ways, through the kernel and through ∂M/∂ω of all sites,
+// answers.hpp.  At each point all probabilities are differentiated, and all biases share that: they enter by the kernel alone.  The derivative by the bias is found in two ways, through the kernel and through ∂M/∂ω of all sites,
 // which have nothing in common: their difference is the error estimate.
 #pragma once
 
@@ -29,7 +28,10 @@ inline double gradient_of_set(const detail::GradientField& field, const EnergyPl
     auto in_lanes = [](size_t from, size_t to, auto use) {
         for (size_t first = from; first < to; first += REGISTER) use(first, int(std::min(to - first, size_t(REGISTER))));
     };
-    auto add = [&](size_t first, int count) { PointsOfSet(field, plan, mu, &points[first], count, room).add(); };
+    auto add = [&](size_t first, int count) {
+        if (field.of.dissipation > 0) PointsOfSet<WITH_RETURNS>(field, plan, mu, &points[first], count, room).add();
+        else PointsOfSet<PROBABILITIES>(field, plan, mu, &points[first], count, room).add();
+    };
     size_t poles = std::count_if(points.begin(), points.end(), [](const ContourPoint& of) { return of.kind != ContourPoint::ON_LINE; });
     in_lanes(0, poles, [&](size_t first, int count) { find_exact_poles(field, Line(plan.kT), mu, &points[first], count, room); });
     leave_out_twins(points);
@@ -72,7 +74,8 @@ inline void thermal_gradient(const ThermalGradientGrid& at, double tolerance, do
     for (int f = 0; f < grid.B_count; ++f) {
         fields.emplace_back(at, f);
         leads.push_back(detail::leads_through(cubic, wire.rotated_hopping(),
-                                              [&](int k) { return lead_self_energy(wire, grid.B[f], energy[k]); }));
+                                              [&](int k) { return lead_self_energy(wire, grid.B[f], energy[k]); })
+                            .broadened(wire.dissipation));
     }
     const EnergyPlan plan(grid.omega, grid.omega_count, at.kT, NODES[0], Reach::WINDOW);  // of which the nodes are not looked at
     std::map<int, ShiftedAverages> shifted;  // of each number of nodes
@@ -90,7 +93,7 @@ inline void thermal_gradient(const ThermalGradientGrid& at, double tolerance, do
         int f = set % grid.B_count;
         Levels levels(models[set].levels, plan.window);
         Batch batch(levels);
-        auto points = contour(plan, wire.rotated_hopping(), models[set].poles, leads[f], batch);
+        auto points = contour(plan, wire.rotated_hopping(), models[set].poles, leads[f], wire.dissipation, batch);
         shifted.at(models[set].nodes).write(models[set].conductances, at.kT, others);
         gradient_error[set] = gradient_of_set(fields[f], plan, grid.mu[set / grid.B_count], points, by_V, others);
     });

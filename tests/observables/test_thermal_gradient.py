@@ -2,6 +2,7 @@
 
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 from multiprocessing import get_context
 
@@ -33,6 +34,7 @@ STEPS = {
     "bias": 1e-4,
     "temperature": 5e-4,
     "V": 4e-4,
+    "dissipation": 2e-4,
 }
 
 
@@ -74,7 +76,7 @@ def slopes_of(gradient, name):
 
 def assert_right(wire, mu, B, temperature, names, share):
     along = np.cos(np.pi * 3 * (np.arange(wire.sites) + 0.5) / wire.sites)
-    found = conductance_gradient(wire, mu, B, BIAS, temperature)
+    found = conductance_gradient(wire, mu, B, BIAS, temperature, parameters=names)
     assert found.gradient_error.item() < share
     for name in names:
         ours = slopes_of(found, name)
@@ -84,15 +86,37 @@ def assert_right(wire, mu, B, temperature, names, share):
         assert_allclose(ours, slope, rtol=0, atol=share * abs(slope).max() + 3 * error)
 
 
-@pytest.mark.parametrize("name", STEPS)
+@pytest.mark.parametrize("name", sorted(set(STEPS) - {"dissipation"}))
 def test_each_derivative_is_that_of_the_quadrature(name):
     wire = replace(random_wire(3, sites=300), critical_field=2.0)
     assert_right(wire, 0.3, 0.45, 0.05, [name], share=1e-3)
 
 
+@pytest.mark.parametrize("name", STEPS)
+def test_so_it_is_where_levels_are_broadened(name):
+    wire = replace(random_wire(3, sites=150), critical_field=2.0, dissipation=0.001)
+    assert_right(wire, 0.3, 0.45, 0.05, [name], share=1e-3)
+
+
+@pytest.mark.parametrize("B", [0.0, 0.5])
+def test_little_broadening_changes_little(B):
+    """Two ways to the same: with all that goes back into its channels, and without."""
+    wire = random_wire(4, sites=150)
+    without = conductance_gradient(wire, 0.2, B, BIAS)
+    little = conductance_gradient(replace(wire, dissipation=1e-9), 0.2, B, BIAS)
+    by_energies = ("mu", "gamma", "delta0", "bias", "V", "barrier_left", "barrier_right")
+    largest = max(abs(slopes_of(without, name)).max() for name in by_energies)
+    share = without.gradient_error.item() + little.gradient_error.item()
+    assert share < 0.01
+    for name in by_energies:
+        ours, theirs = slopes_of(little, name), slopes_of(without, name)
+        assert_allclose(ours, theirs, rtol=0, atol=share * largest)
+
+
 @settings(max_examples=5)
 @given(seeds, mus, fields, st.floats(0.03, 0.06), st.sampled_from(sorted(STEPS)))
 @example(11, 0.0, 0.0, 0.05, "V")
+@example(2, 0.4, 0.3, 0.05, "dissipation")
 def test_wires_of_any_kind_have_them(seed, mu, B, temperature, name):
     rng = np.random.default_rng(seed)
     wire = replace(
@@ -104,6 +128,7 @@ def test_wires_of_any_kind_have_them(seed, mu, B, temperature, name):
         lead_alpha=rng.choice([None, 5.0]),
         lead_g=rng.choice([None, 10.0]),
         critical_field=rng.choice([np.inf, 3.0]),
+        dissipation=0.001 if name == "dissipation" else rng.choice([0.0, 0.0005]),
     )
     found = conductance_gradient(wire, mu, B, BIAS, temperature)
     share = max(3e-3, found.gradient_error.item())
@@ -179,11 +204,11 @@ def test_both_modes_are_products_with_the_jacobian():
 
 
 def test_hot_and_lossy_wires_have_differences():
-    """Above the gap, and with dissipation, where the closed form does not reach."""
+    """Above the gap, and where the wire leaks alone, where the closed form does not reach."""
     wire = random_wire(9, sites=6)
     warm = conductance_gradient(wire, 0.2, 0.3, 0.02, 0.2)
     assert warm.gradient_error.item() < 1e-3
-    lossy = replace(wire, dissipation=0.002)
+    lossy = replace(wire, dissipation=0.002, parent_dissipation=0.0)
     found = conductance_gradient(lossy, 0.2, 0.3, 0.02, 0.05, parameters=["dissipation", "mu"])
     h = 1e-4
     for name, other in (
@@ -244,7 +269,7 @@ def test_wires_of_two_sites_have_them():
     assert_right(wire, 0.1, 0.2, 0.05, ["mu", "bias", "gamma"], share=5e-3)
 
 
-def one_case(seed):
+def one_case(seed, broadened=False):
     """Return two derivatives' errors and estimates, as shares of the largest by an energy.
 
     None where the differences themselves are no better.
@@ -259,13 +284,16 @@ def one_case(seed):
         delta0=rng.uniform(0.12, 0.14),
         barrier=tuple(rng.uniform(5, 30, 2)),
     )
+    if broadened:
+        wire = replace(wire, dissipation=10 ** rng.uniform(-3.5, -2.0))
     T, mu, B = rng.uniform(0.03, 0.065), rng.uniform(0, 0.6), rng.uniform(0, 0.8)
     along = np.cos(np.pi * rng.integers(1, 12) * (np.arange(300) + 0.5) / 300)
-    found = conductance_gradient(wire, mu, B, BIAS, T)
-    by_energies = ("mu", "gamma", "delta0", "bias", "V")
+    by_energies = ("mu", "gamma", "delta0", "bias", "V", *(["dissipation"] if broadened else []))
+    found = conductance_gradient(wire, mu, B, BIAS, T, parameters=by_energies)
     largest = max(abs(slopes_of(found, name)).max() for name in by_energies)
     shares = []
-    for name in ("V", ("mu", "gamma", "delta0", "bias")[seed % 4]):
+    others = ("mu", "gamma", "delta0", "dissipation" if broadened else "bias")
+    for name in ("V", others[seed % 4]):
         ours = slopes_of(found, name)
         if name == "V":
             ours = np.einsum("bsc,s->bc", ours, along)
@@ -277,11 +305,12 @@ def one_case(seed):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("cases", [5000])
-def test_ten_thousand_random_derivatives(cases):
+@pytest.mark.parametrize(("cases", "broadened"), [(5000, False), (500, True)])
+def test_ten_thousand_random_derivatives(cases, broadened):
     """`pytest -m slow -s -k ten_thousand_random_derivatives`: half an hour on two cores."""
+    of_case = partial(one_case, broadened=broadened)
     with ProcessPoolExecutor(2, get_context("spawn")) as pool:
-        each = [pair for pairs in pool.map(one_case, range(cases), chunksize=20) for pair in pairs]
+        each = [pair for pairs in pool.map(of_case, range(cases), chunksize=20) for pair in pairs]
     shares, estimates = np.array([pair for pair in each if pair is not None]).T
     print(f"\n{shares.size} of {len(each)} that the differences resolve")
     for percent in (50, 90, 95, 99, 99.9, 100):

@@ -248,7 +248,7 @@ class ThermalGradient(NamedTuple):
     by_V: FloatArray
     """Derivatives by every site's V, shape (mu, B, bias, 4, site), in e²/h per meV."""
     others: FloatArray
-    """Derivatives by what core/derivatives/shifted_averages.hpp lists, (mu, B, bias, 4, 9)."""
+    """Derivatives by what core/derivatives/shifted_averages.hpp lists, (mu, B, bias, 4, 10)."""
     difference: FloatArray
     """How far two ways to the derivative by the bias are apart, (mu, B), in e²/h per kT;
     infinite, and the derivatives NaN, where there is no model."""

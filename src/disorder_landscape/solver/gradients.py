@@ -1,8 +1,8 @@
 """The derivatives of conductances with respect to all that a wire and a measurement are made of.
 
 At T = 0 and at a temperature the compiled core finds them (core/derivatives), at a cost that does
-not depend on how many there are. Where its closed form does not reach, above the gap and with
-dissipation, they are differences of exact averages.
+not depend on how many there are. Where its closed form does not reach, above the gap and where the
+wire leaks without its parent, they are differences of exact averages.
 """
 
 from __future__ import annotations
@@ -38,11 +38,12 @@ AT_A_TEMPERATURE = AT_ZERO | {
     "temperature": "K",
 }
 """The same at a temperature; bias is an offset of all of them."""
-BY_DIFFERENCES = {"dissipation": "meV"}
-"""The same, always found from differences."""
-UNITS = AT_A_TEMPERATURE | BY_DIFFERENCES
-"""All of these."""
-CORE_ORDER = ("mu", "V_Z", "alpha", "gamma", "delta0", "lead_V_Z", "energy", "bias", "kT")
+UNITS = AT_A_TEMPERATURE | {"dissipation": "meV"}
+"""All of these; of a wire without dissipation the derivative by it is a difference."""
+CORE_ORDER = (
+    *("mu", "V_Z", "alpha", "gamma", "delta0", "lead_V_Z"),
+    *("dissipation", "energy", "bias", "kT"),
+)
 """What the core differentiates by, as core/derivatives/shifted_averages.hpp has it."""
 SAFETY = 10.0
 """Estimated error over the difference of the two ways to the derivative by the bias. Of 318 random
@@ -162,9 +163,9 @@ def _at_one_gap(
     complete: bool,
 ) -> Gradient:
     """Return the derivatives of a wire without a critical field."""
-    if wire.lossless and routes.stays_below_gap([wire], bias, temperature):
+    if has_closed_form(wire, bias, temperature):
         found = _of_the_core(wire, mu, B, bias, temperature)
-        missing = [name for name in names if name in BY_DIFFERENCES]
+        missing = [name for name in names if name not in found.by]
         if complete:
             _complete(found, wire, mu, B, bias, temperature, names)
         else:
@@ -183,6 +184,12 @@ def _at_one_gap(
         by[name], share = difference(wire, mu, B, bias, temperature, name)
         worst = np.maximum(worst, share)
     return replace(found, by=by, gradient_error=worst)
+
+
+def has_closed_form(wire: Nanowire, bias: FloatArray, temperature: float) -> bool:
+    """Return whether derivatives of a wire without a critical field are in closed form."""
+    reaches = routes.closed_form_reaches([wire], bias, temperature, theta=0.0)
+    return reaches and routes.stays_below_gap([wire], bias, temperature)
 
 
 def _complete(
@@ -206,7 +213,7 @@ def _complete(
         if np.isfinite(found.gradient_error[m, f]):
             continue
         found.gradient_error[m, f] = LEAST
-        for name in set(names) - {"critical_field", *BY_DIFFERENCES}:
+        for name in set(names) & set(found.by) - {"critical_field"}:
             one, share = difference(wire, *point, name)
             found.by[name][m, f] = one[0, 0]
             found.gradient_error[m, f] = max(found.gradient_error[m, f], share.item())
@@ -234,6 +241,8 @@ def _of_the_core(
         "bias": of["bias"],
         "temperature": BOLTZMANN * of["kT"],
     }
+    if wire.dissipation > 0:
+        by["dissipation"] = of["dissipation"]
     by_energies = (by["mu"], by["gamma"], by["delta0"], by["bias"], abs(by["V"]).max(axis=-1))
     largest = BOLTZMANN * temperature * np.max([abs(of) for of in by_energies], axis=(0, 3, 4))
     share = SAFETY * raw.difference / np.maximum(largest, np.finfo(float).tiny) + LEAST

@@ -14,7 +14,7 @@ from disorder_landscape.inference.problem.measurement import Measurement, simula
 from disorder_landscape.inference.problem.unknowns import Device, Unknowns, share_settings
 from disorder_landscape.model.parameters import NOISE_FLOOR, FloatArray, Nanowire
 from disorder_landscape.model.quantities import CONDUCTANCES
-from disorder_landscape.solver import compiled, gradients, routes
+from disorder_landscape.solver import compiled, gradients
 
 SOLVER_ERROR = compiled.core.TOLERANCE
 """In e²/h: the error of the simulation. Smaller noise makes no difference."""
@@ -123,12 +123,12 @@ class Observation:
     def exact_slopes(self, x: FloatArray) -> Slopes | None:
         """Return the data and their derivatives at x (unknown,), in closed form.
 
-        None where the closed form does not reach: with dissipation, in tilted fields, at T = 0 and
-        where biases and temperature reach the gap.
+        None where the closed form does not reach: in tilted fields, at T = 0, where biases and
+        temperature reach the gap, and where the wire leaks without its parent.
         """
         device = self.unknowns.devices(x[None], self.measurement)[0]
         wire, at = device.wire, self._as_set_up(device)
-        if not _closed_form_has_slopes(wire, at) or "dissipation" in self.unknowns.parameters:
+        if not _closed_form_has_slopes(wire, at):
             return None
         G, slopes, doubtful = [], [], []
         for points in range(0, at.mu.size, POINTS_AT_ONCE):
@@ -176,10 +176,10 @@ class Observation:
 
 def _closed_form_has_slopes(wire: Nanowire, at: Measurement) -> bool:
     """Return whether there are derivatives of a wire at these settings in closed form."""
-    if not (wire.lossless and at.theta == 0 and at.temperature > 0):
+    if at.theta != 0 or at.temperature == 0:
         return False
     narrowest = wire.in_field(float(abs(at.B).max()))
-    return routes.stays_below_gap([narrowest], at.bias, at.temperature)
+    return gradients.has_closed_form(narrowest, at.bias, at.temperature)
 
 
 def errors_variance(noise: ArrayLike) -> FloatArray:
