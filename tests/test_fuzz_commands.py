@@ -662,6 +662,7 @@ def test_infer_writes_or_refuses(count, refused_or_done):
         "--output": st.sampled_from(NEW_FILES),
         "--noise": texts("0", "0.01", "0.01,0.01,0.002,0.002", "1", "2", "0.1,0.1", "-0.1"),
         "--from-prior": st.just(True),
+        "--discrepancy": st.just(True),
         "--samples": texts("2", "4", "3", "0", "-2"),
         "--seed": texts("0", "3", "-1", "2147483648", "4294967296"),
         "--plot": st.sampled_from(["new.png", "new.html", *NEW_FILES]),

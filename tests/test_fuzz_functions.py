@@ -375,6 +375,7 @@ def test_infer_answers_or_refuses(count, short):
         "samples": st.one_of(st.sampled_from([2, 4, 3, 1, 0, 4.0, "4"]), odd_scalars()),
         "seed": st.one_of(st.sampled_from([0, 7, -1, 2**31, 2**32, 2.5]), odd_scalars()),
         "settings": st.sampled_from([None, InversionSettings(attempts=1), 3, "x", {}]),
+        "discrepancy": st.one_of(st.booleans(), odd_scalars()),
         "checkpoint": st.sampled_from([None, "nowhere.json", 3, b"x", "a" * 300, "/dev/null/x"]),
         "progress": st.sampled_from([print, None, 3]),
     }
@@ -398,6 +399,9 @@ def test_infer_answers_or_refuses(count, short):
             require_conductances(R, AXES)
             require_numbers(R["T_IV"], ("lead", "map_mu", "map_B"), -1.001, 1.001)
             require_numbers(R["P_topological"], ("map_mu", "map_B"), 0.0, 1.0)
+            if "discrepancy" in R:
+                measured = R["discrepancy"][np.isfinite(R["misfit"])]
+                require_numbers(measured, ("channel",), 0.0)
             measured = [name in arguments["G"] for name in CONDUCTANCES]
             assert (np.isfinite(R["misfit"]) <= measured).all()
 

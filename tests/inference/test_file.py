@@ -36,6 +36,7 @@ def settings_of(folder, **changes):
         "from_prior": True,
         "samples": 4,
         "seed": 0,
+        "discrepancy": False,
         "made": {},
     }
     return Settings(**{**usual, **changes})

@@ -62,6 +62,13 @@ def infer(
         int, typer.Option(help="Samples of the posterior that are written, an even number.")
     ] = 64,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the ensembles.")] = 0,
+    discrepancy: Annotated[
+        bool,
+        typer.Option(
+            "--discrepancy",
+            help="Allow for errors beside the noise, where the noise does not explain the misfit.",
+        ),
+    ] = False,
     plot: Annotated[
         Path | None,
         typer.Option(help="Picture or page (.html) of the result; of several, a folder."),
@@ -93,7 +100,7 @@ def infer(
     from disorder_landscape.inference.report import parse_noise
 
     errors = None if noise is None else parse_noise(noise)
-    settings = Settings(prior, model, errors, from_prior, samples, seed, made_here())
+    settings = Settings(prior, model, errors, from_prior, samples, seed, discrepancy, made_here())
     is_file = len(measurements) == 1 and output.suffix and not output.is_dir()
     fits = len(measurements) == 1 or output.suffix != ".nc"
     require(fits, "output", "name a folder, for several measurements", f"it is '{output}'")
@@ -198,4 +205,5 @@ def _command(
         options["--noise"] = noise
     words = [str(word) for option in options.items() for word in option]
     files = [str(task.measurement.resolve()) for task in tasks]
-    return ["infer", *files, *words, *(["--from-prior"] if settings.from_prior else [])]
+    switches = {"--from-prior": settings.from_prior, "--discrepancy": settings.discrepancy}
+    return ["infer", *files, *words, *(name for name, is_on in switches.items() if is_on)]

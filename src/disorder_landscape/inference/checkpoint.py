@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from disorder_landscape.files import read_json, write_json
+from disorder_landscape.inference.problem.gaussian import Gaussian
 
 Cache = Callable[[str, Callable[[], dict[str, Any]]], dict[str, Any]]
 """`Checkpoint.cached`: returns the result of a name, from the file or calculated now."""
@@ -19,6 +20,11 @@ _MUST = "be the file of an interrupted inversion (delete it to start anew)"
 def uncached(name: str, calculate: Callable[[], dict[str, Any]]) -> dict[str, Any]:
     """Calculate the result: the `Cache` that keeps nothing."""
     return calculate()
+
+
+def cached_gaussian(cache: Cache, name: str, make: Callable[[], Gaussian]) -> Gaussian:
+    """Return the normal distribution of a name, from the file or made now."""
+    return Gaussian.from_dict(cache(name, lambda: make().to_dict()))
 
 
 class Checkpoint:

@@ -15,10 +15,10 @@ import xarray as xr
 from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.dataset.store import read_dataset, write_dataset
 from disorder_landscape.inference.infer import PAPERS_SETTINGS, infer
-from disorder_landscape.inference.invert import Progress, silent
 from disorder_landscape.inference.plot import plot_inference
 from disorder_landscape.inference.problem.measurement import measurement_of
 from disorder_landscape.inference.problem.prior import Prior
+from disorder_landscape.inference.stages import Progress, silent
 from disorder_landscape.learning.model import CONFIG, NETWORK, SCALER
 from disorder_landscape.locks import kept_from_others
 
@@ -40,6 +40,7 @@ class Settings:
     from_prior : bool
     samples : int
     seed : int
+    discrepancy : bool
         As in `infer`.
     made : mapping
         Provenance of the results.
@@ -51,6 +52,7 @@ class Settings:
     from_prior: bool
     samples: int
     seed: int
+    discrepancy: bool
     made: Mapping[str, str]
 
 
@@ -137,6 +139,7 @@ def _infer_file(settings: Settings, task: Task, progress: Progress = silent) -> 
         network,
         settings.samples,
         settings.seed,
+        discrepancy=settings.discrepancy,
         checkpoint=task.unfinished,
         progress=progress,
     )
@@ -145,7 +148,8 @@ def _infer_file(settings: Settings, task: Task, progress: Progress = silent) -> 
         plot_inference(result, explained, task.plot)
     asked = _asked(task.measurement, settings, _given(settings))
     attrs = {**settings.made, ASKED: asked}
-    write_dataset(result, task.output, attrs, may_lack=["misfit"])  # of channels without data
+    of_channels = ["misfit", "discrepancy"]  # some may be without data
+    write_dataset(result, task.output, attrs, may_lack=of_channels)
     task.unfinished.unlink(missing_ok=True)
     return result
 
@@ -206,6 +210,7 @@ def _asked(measurement: Path, settings: Settings, given: Mapping[str, str]) -> s
         "from_prior": settings.from_prior,
         "samples": settings.samples,
         "seed": settings.seed,
+        "discrepancy": settings.discrepancy,
     }
     return json.dumps(asked, sort_keys=True)
 

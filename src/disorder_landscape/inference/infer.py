@@ -14,20 +14,19 @@ from disorder_landscape.arguments import (
     check_progress,
     require,
     shown,
+    whether,
     whole_number_in,
 )
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.inference.checkpoint import Checkpoint
+from disorder_landscape.inference.discrepancy import best_effort, discrepancy_of
 from disorder_landscape.inference.invert import (
-    MAPS,
     InversionSettings,
-    Progress,
-    Step,
     invert,
-    silent,
     usable_network_features,
     usual_settings,
 )
+from disorder_landscape.inference.optimum import chi_square_excess
 from disorder_landscape.inference.problem.measurement import measurement_of, settings_of
 from disorder_landscape.inference.problem.observation import (
     Observation,
@@ -39,6 +38,15 @@ from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.result import result_of
 from disorder_landscape.inference.search.first_guess import on_grid_of_network
+from disorder_landscape.inference.stages import (
+    GAUSS_NEWTON,
+    IMPORTANCE_SAMPLING,
+    MAPS,
+    Progress,
+    Step,
+    silent,
+    within,
+)
 from disorder_landscape.inference.verdict import verdict
 from disorder_landscape.learning.model import (
     TrainedModel,
@@ -51,7 +59,7 @@ from disorder_landscape.model.parameters import TEMPERATURE, Nanowire
 SAMPLES = 64
 PAPERS_SETTINGS = {"theta": 0.0, "barrier": Nanowire.barrier, "temperature": TEMPERATURE}
 """Where neither the prior nor the measurement says anything."""
-SEARCH = 2
+SEARCH = 3
 """Number of the search's version. What an interrupted run of another one has found is of no use."""
 Model = str | Path | TrainedModel
 
@@ -64,6 +72,7 @@ def infer(
     samples: int = SAMPLES,
     seed: int = 0,
     settings: InversionSettings | None = None,
+    discrepancy: bool = False,
     checkpoint: Path | None = None,
     progress: Progress = silent,
 ) -> xr.Dataset:
@@ -95,6 +104,9 @@ def infer(
         How many samples of the posterior are returned, an even number.
     seed : int
     settings : InversionSettings, optional
+    discrepancy : bool
+        Whether an error beside the noise is allowed for, where the noise does not explain the
+        misfit: of each channel one, as large as the best effort leaves. The verdict stays the same.
     checkpoint : Path, optional
         File through which an interrupted run goes on. It is not deleted, since the result is not
         saved.
@@ -110,6 +122,7 @@ def infer(
         standard deviations of the posterior itself, of all of these, with _mean and _std. misfit
         (channel) in e²/h, of the most probable wire, NaN where nothing was measured. Of the mean:
         conductances G_LL … G_RL (mu, B, bias) and, on a finer grid, T_IV (lead, map_mu, map_B).
+        With discrepancy, the standard deviation of that error, discrepancy (channel) in e²/h.
         P_topological (map_mu, map_B), the share of the samples with det r < 0. P_gap (gap, mu, B):
         the share whose lowest excitation, above zero modes where det r < 0, is above each energy
         gap in meV. Attributes: verdict ("converged", "not converged" or "not described by the
@@ -130,18 +143,27 @@ def infer(
     samples = whole_number_in("samples", samples, 2, 10_000)
     require(samples % 2 == 0, "samples", "be an even number", f"it is {samples}")
     seed = whole_number_in("seed", seed, 0, 2**31)
+    discrepancy = whether("discrepancy", discrepancy)
     trained, start = _network(observation, prior, network)
     settings = settings or usual_settings(usable_network_features(trained, observation))
     fingerprint = _fingerprint(observation, trained, repr((seed, settings, start)))
     found_before = Checkpoint(checkpoint, fingerprint)
     found = invert(observation, trained, seed, settings, progress, found_before)
+    said, with_errors = verdict(observation, found), observation
+    if discrepancy:
+        last = found.attempts - 1
+        reports = (within(progress, last, stage) for stage in (GAUSS_NEWTON, IMPORTANCE_SAMPLING))
+        seeds = [seed, 2**31 + 4]
+        with_errors, found = best_effort(observation, found, seeds, found_before.cached, *reports)
     spread = observation.unknowns.site_std(found.answer.covariance)
     misfit = overall_misfit(observation, found.best.data)
     progress(Step(found.attempts - 1, MAPS, 0, misfit, spread))
-    result = result_of(observation, found, samples, seed)
+    result = result_of(with_errors, found, samples, seed)
+    if discrepancy:
+        result["discrepancy"] = discrepancy_of(observation, with_errors)
     result.attrs |= {
-        "verdict": verdict(observation, found),
-        "excess": found.best.excess,
+        "verdict": said,
+        "excess": chi_square_excess(observation, found.best.data),
         "attempts": found.attempts,
         "rounds": found.rounds,
         "start": start,

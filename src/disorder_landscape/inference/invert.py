@@ -7,14 +7,13 @@ sampling follows where the posterior is wide.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import NamedTuple
 
 import numpy as np
 
-from disorder_landscape.inference.checkpoint import Cache, Checkpoint
+from disorder_landscape.inference.checkpoint import Cache, Checkpoint, cached_gaussian
 from disorder_landscape.inference.optimum import Optimum, best
 from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.posterior.samples import posterior_samples
@@ -31,6 +30,15 @@ from disorder_landscape.inference.search.regression_rounds import (
     regression_rounds,
 )
 from disorder_landscape.inference.search.whole_landscape import optima_of_whole_landscape
+from disorder_landscape.inference.stages import (
+    GAUSS_NEWTON,
+    IMPORTANCE_SAMPLING,
+    ROUND,
+    Progress,
+    Step,
+    silent,
+    within,
+)
 from disorder_landscape.inference.verdict import is_surely_right
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.model.parameters import FloatArray
@@ -44,9 +52,6 @@ does."""
 NEARBY = 0.2
 """Where an answer that fits is right all but surely, another start must find it again from this
 part of the distribution's width away."""
-ROUND, GAUSS_NEWTON, IMPORTANCE_SAMPLING = "round", "Gauss–Newton", "importance sampling"
-MAPS = "maps"
-"""The stages of an inversion."""
 
 
 @dataclass(frozen=True)
@@ -59,28 +64,6 @@ class InversionSettings:
     more_samples: float = 1.25
     """Each further attempt has so many times the samples for each unknown, and its distribution
     shrinks more slowly."""
-
-
-class Step(NamedTuple):
-    """What an inversion is at, for a progress callback."""
-
-    attempt: int
-    stage: str
-    """One of ROUND, GAUSS_NEWTON, IMPORTANCE_SAMPLING and MAPS."""
-    number: int
-    misfit: float
-    """Root mean square in e²/h."""
-    spread: float
-    """The standard deviation of V in meV, root mean square over the sites."""
-
-
-Progress = Callable[[Step], None]
-"""A progress callback: called after each round and each iteration of importance sampling, before
-each Gauss–Newton step, and before the maps of a result."""
-
-
-def silent(step: Step) -> None:
-    """Do nothing: the progress callback where there is none."""
 
 
 def invert(
@@ -114,7 +97,7 @@ def invert(
     else:
         found = _optima_of_few_unknowns(observation, model, steps, seed, settings, progress, cache)
         optima, attempts, rounds = found
-    report = partial(_report, progress, attempts - 1, IMPORTANCE_SAMPLING)
+    report = within(progress, attempts - 1, IMPORTANCE_SAMPLING)
     drawn = posterior_samples(observation, optima.found, [seed, 2**31 + 2], cache, report)
     return Outcome(optima.found, drawn, attempts, rounds)
 
@@ -134,7 +117,7 @@ def _optima_of_few_unknowns(
     prior, guess = observation.unknowns.prior, None
     if model is not None:
         rng = np.random.default_rng([seed, 2**31])
-        guess = _cached_gaussian(cache, "guess", partial(network_guess, model, observation, rng))
+        guess = cached_gaussian(cache, "guess", partial(network_guess, model, observation, rng))
     some = observation.on_some_lines(SHARE, np.random.default_rng([seed, 2**31 + 3]))
     optima = Optima(observation, some, steps)
     count = 0
@@ -159,9 +142,9 @@ def _steps(
     goal: Goal,
 ) -> Gaussian:
     """Return where Gauss–Newton steps from x (unknown,) end."""
-    report = partial(_report, progress, attempt, GAUSS_NEWTON)
+    report = within(progress, attempt, GAUSS_NEWTON)
     make = partial(gauss_newton, observation, x, report, known, goal)
-    return _cached_gaussian(cache, f"gauss_newton.{name}", make)
+    return cached_gaussian(cache, f"gauss_newton.{name}", make)
 
 
 def _search(
@@ -216,16 +199,6 @@ def usable_network_features(
 ) -> NetworkFeatures | None:
     """Return a network as a source of features, if it needs no more data than the first rounds."""
     return network_features(model, observation, RoundSettings.share)
-
-
-def _cached_gaussian(cache: Cache, name: str, make: Callable[[], Gaussian]) -> Gaussian:
-    return Gaussian.from_dict(cache(name, lambda: make().to_dict()))
-
-
-def _report(
-    progress: Progress, attempt: int, stage: str, number: int, misfit: float, spread: float
-) -> None:
-    progress(Step(attempt, stage, number, misfit, spread))
 
 
 def _with_more_samples(settings: InversionSettings, number: int) -> RoundSettings:

@@ -8,7 +8,8 @@ from contextlib import contextmanager
 from tqdm import tqdm
 
 from disorder_landscape.estimates import announce_repeated
-from disorder_landscape.inference.invert import (
+from disorder_landscape.inference.problem.observation import Observation
+from disorder_landscape.inference.stages import (
     GAUSS_NEWTON,
     IMPORTANCE_SAMPLING,
     MAPS,
@@ -16,7 +17,6 @@ from disorder_landscape.inference.invert import (
     Progress,
     Step,
 )
-from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.verdict import is_surely_right
 
 USUAL_STEPS = {ROUND: 4, GAUSS_NEWTON: 8, IMPORTANCE_SAMPLING: 3, MAPS: 1}

@@ -135,9 +135,22 @@ def topological_sentence(result: xr.Dataset) -> str:
 
 
 def sentences_on(result: xr.Dataset) -> list[str]:
-    """Return the verdict as a sentence, and where the wire is topological, if converged."""
+    """Return the verdict as a sentence, and another one.
+
+    It is where the wire is topological, if converged, and how large the discrepancy is otherwise.
+    """
     converged = result.attrs["verdict"] == CONVERGED
-    return [verdict_sentence(result), *([topological_sentence(result)] if converged else [])]
+    more = topological_sentence(result) if converged else discrepancy_sentence(result)
+    return [sentence for sentence in (verdict_sentence(result), more) if sentence]
+
+
+def discrepancy_sentence(result: xr.Dataset) -> str:
+    """Return how large an error beside the noise is allowed for; nothing where none is."""
+    left = result.get("discrepancy", xr.DataArray([0.0], dims="channel"))
+    each = [f"{name} {value:.2g}" for name, value in left.to_series().items() if value > 0]
+    if not each:
+        return ""
+    return f"Errors beside the noise are allowed for, in e²/h: {', '.join(each)}."
 
 
 def not_fixed_lines(result: xr.Dataset) -> list[str]:
@@ -168,4 +181,4 @@ def summary(result: xr.Dataset) -> list[str]:
         unit = f" e²/h; noise: {noise} e²/h" if noise else ""
         lines.append(f"misfit of {name}  {misfit}{unit}")
     hint = stated_noise_hint(result["misfit"].to_numpy(), np.asarray(attrs["noise"]))
-    return [*lines, hint] if hint else lines
+    return [*lines, *(line for line in (discrepancy_sentence(result), hint) if line)]

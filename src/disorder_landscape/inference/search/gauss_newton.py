@@ -11,7 +11,7 @@ guess, steps stopped 10 to 100 µeV off. With the exact ones they find the optim
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
@@ -19,6 +19,7 @@ import numpy as np
 from disorder_landscape.inference.optimum import Optimum, chi_square_excess, is_noise
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.observation import Observation, objective, overall_misfit
+from disorder_landscape.inference.stages import Report, no_report
 from disorder_landscape.model.parameters import FloatArray
 
 DIFFERENCE = 1e-4
@@ -50,7 +51,7 @@ explains the misfit."""
 def gauss_newton(
     observation: Observation,
     start: FloatArray,
-    progress: Callable[[int, float, float], None] = lambda number, misfit, spread: None,
+    progress: Report = no_report,
     known: Sequence[Optimum] = (),
     goal: Goal = "optimum",
 ) -> Gaussian:

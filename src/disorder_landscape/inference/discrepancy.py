@@ -1,0 +1,112 @@
+"""Data that no wire of the model explains: the best effort, and how much is left unexplained.
+
+Each channel gets an error of its own besides the noise, normal and independent from datum to datum:
+the discrepancy. Its size is the most probable one (MacKay, Neural Comput. 4, 415 (1992)): after
+Gauss–Newton steps the variance of a channel's errors is its mean square misfit, over the share of
+the data that the unknowns do not explain by their number alone. Steps and variances take turns.
+
+What a model lacks is not independent from datum to datum. So the error bars are those of an answer
+with so much noise. They do not say how far off the missing part of the model leads.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+import xarray as xr
+
+from disorder_landscape.inference.checkpoint import Cache, cached_gaussian, uncached
+from disorder_landscape.inference.optimum import Optimum, best, optimum_at, same_answer
+from disorder_landscape.inference.outcome import Outcome
+from disorder_landscape.inference.posterior.samples import posterior_samples
+from disorder_landscape.inference.problem.observation import Observation
+from disorder_landscape.inference.search.gauss_newton import gauss_newton
+from disorder_landscape.inference.stages import Report, no_report
+from disorder_landscape.model.parameters import FloatArray
+
+TURNS = 10
+"""Of steps and variances, at most."""
+SETTLED = 0.02
+"""They end when no channel's error changes by more than this part."""
+KEPT = 4
+"""So many optima are taken along, the most probable ones: with more noise another may be best."""
+
+
+def best_effort(
+    observation: Observation,
+    outcome: Outcome,
+    seed: Sequence[int],
+    cache: Cache = uncached,
+    step: Report = no_report,
+    sampling: Report = no_report,
+) -> tuple[Observation, Outcome]:
+    """Return an observation whose errors include the discrepancy, and what explains it best.
+
+    Parameters
+    ----------
+    observation : Observation
+    outcome : Outcome
+        What its inversion has come to. If that explains the data, both are returned as they are.
+    seed : sequence of int
+        Of the samples.
+    cache : callable, optional
+        `Checkpoint.cached`.
+    step, sampling : callable, optional
+        Called before each step, and after each iteration of importance sampling.
+    """
+    if outcome.best.fits:
+        return observation, outcome
+    optima = sorted(outcome.optima, key=lambda one: one.objective)[:KEPT]
+    with_errors = observation
+    for turn in range(TURNS):
+        before = with_errors.noise
+        errors = errors_of(observation, best(optima).data)
+        with_errors = replace(observation, noise=errors)
+        optima = _optima(with_errors, optima, cache, f"discrepancy.{turn}", step)
+        if np.allclose(before, errors, rtol=SETTLED, atol=0.0):
+            break
+    drawn = posterior_samples(with_errors, optima, seed, cache, sampling)
+    return with_errors, Outcome(optima, drawn, outcome.attempts, outcome.rounds)
+
+
+def errors_of(observation: Observation, data: FloatArray) -> FloatArray:
+    """Return the standard deviations of all errors, the noise included, in e²/h, shape (channel,).
+
+    Parameters
+    ----------
+    observation : Observation
+    data : array, shape (datum,)
+        Of the optimum.
+    """
+    unexplained = max(1 - len(observation.unknowns.names) / data.size, 1 / data.size)
+    misfit = np.nan_to_num(observation.misfit(data)) / np.sqrt(unexplained)
+    return np.asarray(np.maximum(misfit, observation.noise))
+
+
+def discrepancy_of(observation: Observation, with_errors: Observation) -> xr.DataArray:
+    """Return the standard deviation of the discrepancy alone in e²/h, dims (channel,).
+
+    NaN where nothing was measured.
+    """
+    measured = np.isfinite(observation.misfit(observation.data))
+    squares = with_errors.noise**2 - observation.noise**2
+    alone = np.where(measured, np.sqrt(squares), np.nan)
+    attrs = {"long_name": "error beside the noise", "units": "e²/h"}
+    return xr.DataArray(alone, dims="channel", attrs=attrs)
+
+
+def _optima(
+    observation: Observation, starts: Sequence[Optimum], cache: Cache, name: str, step: Report
+) -> list[Optimum]:
+    """Return the optima to which steps from others lead, each once."""
+    found: list[Optimum] = []
+    for k, start in enumerate(starts):
+        make = partial(gauss_newton, observation, start.answer.mean, step)
+        end = cached_gaussian(cache, f"{name}.{k}", make)
+        one = replace(optimum_at(observation, end), found_by=start.found_by)
+        if not any(same_answer(observation, one, other) for other in found):
+            found.append(one)
+    return found
