@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
-import numpy as np
 from scipy.special import softmax
 
 from disorder_landscape.inference.checkpoint import Cache, uncached
 from disorder_landscape.inference.optimum import Optimum, best, shares
+from disorder_landscape.inference.posterior import proposal
 from disorder_landscape.inference.posterior.importance_sampling import (
     ImportanceSamples,
     Part,
     importance_sampling,
-    widened,
 )
+from disorder_landscape.inference.posterior.straightened import Straightened
 from disorder_landscape.inference.problem.gaussian import Gaussian, log_density
 from disorder_landscape.inference.problem.observation import Observation
+from disorder_landscape.inference.stages import Report, no_report
 from disorder_landscape.model.parameters import BOLTZMANN
 
 STRAIGHT = 0.25
@@ -26,10 +27,6 @@ LEAST_WIDTH = 1e-3
 """… this in meV, about the width of levels. Conductances are peaks of about that width. By
 Mahalanobis distances of the truth, Laplace's error bars are right below that width and often too
 small above it."""
-WIDENING = 0.26
-"""The first samples are drawn from distributions about the optima with 1 + this/√n times the
-standard deviation, where n is the number of unknowns. (Of a normal posterior's samples, so
-weighted, 90 % are effective, whatever n is.) …"""
 NORMAL, LEAST_NORMAL = 0.97, 0.3
 """… The posterior is taken for Laplace's approximation if samples of the latter, weighted by the
 exact posterior, are effective to a share of at least NORMALⁿ, and never less than LEAST_NORMAL:
@@ -44,7 +41,7 @@ def posterior_samples(
     optima: Sequence[Optimum],
     seed: Sequence[int],
     cache: Cache = uncached,
-    progress: Callable[[int, float, float], None] = lambda number, misfit, spread: None,
+    progress: Report = no_report,
 ) -> ImportanceSamples | None:
     """Return samples of the posterior where it is no normal distribution about the best optimum."""
     chosen, unknowns = best(optima), observation.unknowns
@@ -55,19 +52,15 @@ def posterior_samples(
     width = max(STRAIGHT * BOLTZMANN * observation.measurement.temperature, LEAST_WIDTH)
     if len(counts) == 1 and unknowns.site_std(chosen.answer.covariance) < width:
         return None
-    mixture = [Part(first_proposal(optima[k].answer), float(share[k])) for k in counts]
+    mixture = [Part(optima[k].answer, float(share[k])) for k in counts]
     needed = max(NORMAL ** len(unknowns.names), LEAST_NORMAL)
-    batches = importance_sampling(observation, mixture, seed, cache, progress)
+    straightened = Straightened.about(chosen.answer, unknowns)
+    batches = importance_sampling(observation, mixture, seed, cache, progress, straightened)
     for number, found in enumerate(batches):
-        may_be_normal = number == 0 and len(counts) == 1
+        may_be_normal = number == 0 and len(counts) == 1 and not straightened.parameters
         if may_be_normal and normality(found, chosen.answer) > needed:
             return None
     return found
-
-
-def first_proposal(answer: Gaussian) -> Gaussian:
-    """Return the distribution from which the first samples about an optimum are drawn."""
-    return widened(answer, 1 + WIDENING / np.sqrt(answer.mean.size))
 
 
 def normality(found: ImportanceSamples, answer: Gaussian) -> float:
@@ -76,9 +69,9 @@ def normality(found: ImportanceSamples, answer: Gaussian) -> float:
     Parameters
     ----------
     found : ImportanceSamples
-        Samples of the answer's `first_proposal`, with the weights of the posterior.
+        Samples of its t distribution, with the weights of the posterior.
     answer : Gaussian
     """
     X = found.samples
-    of_answer = softmax(log_density(answer, X) - log_density(first_proposal(answer), X))
+    of_answer = softmax(log_density(answer, X) - proposal.log_density(answer, X))
     return 0.0 if found.power < 1 else float(1 / (found.weight**2 / of_answer).sum())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Self
 
@@ -48,7 +48,11 @@ def log_density(gaussian: Gaussian, X: FloatArray) -> FloatArray:
     return np.asarray(-0.5 * (gaussian.squared_distance(X) + determinant))
 
 
-def log_mixture(drawn: Sequence[tuple[Gaussian, int]], X: FloatArray) -> FloatArray:
+def log_mixture(
+    drawn: Sequence[tuple[Gaussian, int]],
+    X: FloatArray,
+    density: Callable[[Gaussian, FloatArray], FloatArray] = log_density,
+) -> FloatArray:
     """Return the logarithm of the density of a mixture of normal distributions, shape (sample,).
 
     Parameters
@@ -56,7 +60,9 @@ def log_mixture(drawn: Sequence[tuple[Gaussian, int]], X: FloatArray) -> FloatAr
     drawn : sequence of (Gaussian, int)
         The distributions, and how many samples were drawn from each, which is its weight.
     X : array, shape (sample, unknown)
+    density : callable
+        The logarithm of the density of each, if they are no normal distributions.
     """
     count = np.array([number for _, number in drawn])
-    log = np.array([log_density(gaussian, X) for gaussian, _ in drawn])
+    log = np.array([density(gaussian, X) for gaussian, _ in drawn])
     return np.asarray(np.logaddexp.reduce(log + np.log(count / count.sum())[:, None], axis=0))
