@@ -1,5 +1,7 @@
 """Devices that are drawn from a prior, and what is said of an answer. Nothing is inverted."""
 
+import zlib
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -7,18 +9,18 @@ import pytest
 from disorder_landscape.inference.optimum import optimum_at
 from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.problem.gaussian import Gaussian
-from disorder_landscape.studies import devices
+from disorder_landscape.studies import devices, fresh_wires
 from disorder_landscape.studies.devices import (
     Devices,
     Task,
     device_row,
-    drawn_device,
-    measured_device,
     summary,
 )
+from disorder_landscape.studies.drawn_devices import drawn_device, measured_device
 from disorder_landscape.studies.fresh_wires import Inverted
 
 TASK = Task("some", 0.005, 1)
+SEED = [fresh_wires.SEED, zlib.crc32(b"some"), 1]
 
 
 def group(prior):
@@ -31,20 +33,20 @@ def group(prior):
 def test_the_true_unknowns_explain_the_measurement(prior):
     """… which is made by another route, from the disorder before it is cut."""
     some = group(prior)
-    device, truth = drawn_device(some, TASK)
-    observation = measured_device(device, some, TASK)
+    device, truth = drawn_device(some.unknowns, some.grid, SEED)
+    observation = measured_device(device, some.unknowns, some.grid, TASK.noise, SEED)
     off = some.unknowns.potential(truth) - device.wire.potential
     assert np.sqrt((off**2).mean()) < (1e-12 if prior == "device" else 2e-3)
     misfit = observation.simulate(truth[None])[0] - observation.data
     assert misfit.std() == pytest.approx(0.005, rel=0.3 if prior == "device" else 2.0)
-    again, _ = drawn_device(some, TASK)
+    again, _ = drawn_device(some.unknowns, some.grid, SEED)
     np.testing.assert_array_equal(again.wire.potential, device.wire.potential)
 
 
 def test_an_answer_is_compared_with_the_truth(monkeypatch):
     """One that is off by a shift of V, as if it were an offset of µ."""
     some = group("device")
-    _, truth = drawn_device(some, TASK)
+    _, truth = drawn_device(some.unknowns, some.grid, SEED)
     mean = some.unknowns.names.index("mean")
     off = np.eye(truth.size)[mean]
     covariance = np.diag(np.where(off > 0, 4.0, 1e-6))

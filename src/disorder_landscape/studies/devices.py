@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated, ClassVar, Literal
 
@@ -19,16 +19,13 @@ from pydantic import Field
 
 from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.config import Positive
-from disorder_landscape.inference.problem.measurement import Measurement
-from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
 from disorder_landscape.inference.problem.prior import Prior
-from disorder_landscape.inference.problem.unknowns import Device, Unknowns
-from disorder_landscape.model.disorder import mean_reduction, smooth_noise
-from disorder_landscape.model.parameters import B_MAX, BIAS, TEMPERATURE, FloatArray, Nanowire
+from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.studies.calibration import coverage, joint_coverage
-from disorder_landscape.studies.fresh_wires import SEED, Noise, exact_conductances, inverted
+from disorder_landscape.studies.drawn_devices import Grid, drawn_device, measured_device
+from disorder_landscape.studies.fresh_wires import SEED, Noise, inverted
 from disorder_landscape.studies.rows import Row, rounded
-from disorder_landscape.studies.study import Derived, Part, Place, Plan
+from disorder_landscape.studies.study import Derived, Place, Plan
 
 NUMBERS = (
     *("noise", "site_error", "spread", "shape_error", "shape_spread", "mahalanobis"),
@@ -47,30 +44,15 @@ class Task:
     index: int
 
 
-class Devices(Part):
+class Devices(Grid):
     """So many devices of a prior, measured on a grid with each noise."""
 
     name: str
     prior: str
     """Name of a file in configs/priors, without its ending."""
-    mu: tuple[float, float, Positive]
-    """Least and largest value of the measured axis, and number of points."""
-    B_points: Positive
-    """Between zero and the paper's largest field."""
-    biases: Positive
-    """Between the paper's largest ones."""
     noise: tuple[Annotated[Noise, Field(gt=0)], ...]
     """In e²/h."""
     count: Positive
-
-    @property
-    def grid(self) -> Measurement:
-        """What is measured, all conductances zero."""
-        low, high, points = self.mu
-        mu, B = np.linspace(low, high, points), np.linspace(0, B_MAX, self.B_points)
-        bias = np.linspace(BIAS[0], BIAS[-1], self.biases)
-        G = np.zeros((mu.size, B.size, bias.size, 4))
-        return Measurement(G, mu, B, bias, 0.0, Nanowire.barrier, TEMPERATURE)
 
     @cached_property
     def unknowns(self) -> Unknowns:
@@ -111,35 +93,6 @@ class DevicesPlan(Plan):
         return Derived(numbers)
 
 
-def drawn_device(group: Devices, task: Task) -> tuple[Device, FloatArray]:
-    """Return a device of the prior, as it is measured, and its unknowns (unknown,).
-
-    The disorder of a whole landscape is drawn from the noise itself; the unknowns then are those
-    of the potential that is nearest to it.
-    """
-    rng = np.random.default_rng([SEED, zlib.crc32(task.name.encode()), task.index])
-    unknowns, given = group.unknowns, group.unknowns.given
-    x = rng.normal(size=len(unknowns.names))
-    device = unknowns.devices(x[None], group.grid)[0]
-    if not unknowns.is_whole_landscape:
-        return device, x
-    disorder = (given.correlation_length, "sum", given.amplitude)
-    V = smooth_noise(rng, given.sites, *disorder)
-    V = V - V.mean() * (1 - mean_reduction(given.sites, *disorder, given.mean_std))
-    parameters = {name: float(unknowns.parameter(name, x)) for name in unknowns.parameters}
-    wire = replace(device.wire, potential=V)
-    return Device(wire, device.setup), unknowns.of_device(np.empty(0), V, parameters)
-
-
-def measured_device(device: Device, group: Devices, task: Task) -> Observation:
-    """Return the measurement of a device, with errors."""
-    rng = np.random.default_rng([SEED, zlib.crc32(task.name.encode()), task.index, 1])
-    setup, grid = device.setup, group.grid
-    G = exact_conductances(device.wire, setup.mu, grid.B, setup.bias, setup.temperature)
-    measurement = replace(grid, G=G + task.noise * rng.normal(size=G.shape))
-    return Observation(measurement, group.unknowns, noise_of_channels(task.noise))
-
-
 def device_row(task: Task, group: Devices) -> dict[str, object]:
     """Invert the measurement of a device and compare the answer with the truth.
 
@@ -152,9 +105,10 @@ def device_row(task: Task, group: Devices) -> dict[str, object]:
         each unknown `z_scores`, the truth's distance in standard deviations, and `widths`, the
         standard deviation as a share of the prior's.
     """
-    device, truth = drawn_device(group, task)
-    observation = measured_device(device, group, task)
-    found, unknowns = inverted(observation, None, task.index), group.unknowns
+    unknowns, seed = group.unknowns, [SEED, zlib.crc32(task.name.encode()), task.index]
+    device, truth = drawn_device(unknowns, group.grid, seed)
+    observation = measured_device(device, unknowns, group.grid, task.noise, seed)
+    found = inverted(observation, None, task.index)
     mean, covariance = found.answer.mean, found.answer.covariance
     off = unknowns.potential(mean) - device.wire.potential
     std = np.sqrt(np.diag(covariance))

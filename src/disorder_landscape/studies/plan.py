@@ -18,6 +18,8 @@ from disorder_landscape.studies.accuracy import AccuracyPlan
 from disorder_landscape.studies.calibration import CalibrationPlan
 from disorder_landscape.studies.components import ComponentsPlan
 from disorder_landscape.studies.devices import DevicesPlan
+from disorder_landscape.studies.evidence import EvidencePlan
+from disorder_landscape.studies.hot_to_cold import HotToColdPlan
 from disorder_landscape.studies.inversions import InversionsPlan
 from disorder_landscape.studies.noise import NoisePlan
 from disorder_landscape.studies.odd_wires import OddWiresPlan
@@ -38,6 +40,8 @@ AnyPlan = (
     | CalibrationPlan
     | ComponentsPlan
     | DevicesPlan
+    | EvidencePlan
+    | HotToColdPlan
     | InversionsPlan
     | NoisePlan
     | OddWiresPlan
