@@ -7,7 +7,7 @@
 //
 // Y = G_·b m G_a·.  For real dM' that is Tr[S dM'], S the symmetric part of −2 Re Y.  Where nothing is
 // absorbed, the conductances at both signs of ω are sums of the probabilities between different
-// channel sets, six by symmetry, and so are all derivatives: of these at one sign, or of all six.
+// channel sets, six by symmetry, and so are all derivatives: of these at one sign, or of all six.  Elsewhere there are ten.
 #pragma once
 
 #include "../leads/attach.hpp"

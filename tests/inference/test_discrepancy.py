@@ -106,8 +106,13 @@ def test_an_interrupted_run_goes_on(measured, allowed, steps, tmp_path):
 
     with pytest.raises(KeyboardInterrupt):
         infer(measured, discrepancy=True, progress=interrupt, checkpoint=path)
-    again = infer(measured, discrepancy=True, checkpoint=path)
+    left_to_do = []
+    again = infer(measured, discrepancy=True, checkpoint=path, progress=left_to_do.append)
     xr.testing.assert_identical(again, allowed)
+    assert sum(step.stage == "round" for step in left_to_do) == sum(
+        step.stage == "round" for step in steps
+    )
+    assert len(left_to_do) < len(steps) / 2
 
 
 def test_only_a_truth_value_is_taken(measured):

@@ -85,6 +85,13 @@ def test_the_evidence_is_that_of_the_exact_posterior():
     assert found.log_mean_weight == pytest.approx(exact, abs=0.3)
 
 
+def test_a_ridge_is_no_normal_distribution_however_well_v_is_known():
+    """Here kT is so large that nothing else would ask for samples."""
+    observation, optimum = ridge(0.5)
+    observation.measurement = Measured(temperature=100.0)
+    assert posterior_samples(observation, [optimum], [0]) is not None
+
+
 def test_without_it_many_more_samples_are_needed():
     observation, optimum = ridge(1.0)
     straight = posterior_samples(observation, [optimum], [0])

@@ -217,6 +217,13 @@ def test_hot_and_lossy_wires_have_differences():
     ):
         down, up = (conductance(w, 0.2, 0.3, 0.02, 0.05).G_LL.item() for w in other)
         assert found[f"dG_LL_d{name}"].item() == pytest.approx((up - down) / (2 * h), rel=1e-3)
+    alone = replace(wire, dissipation=0.002, parent_dissipation=0.002)
+    G = [
+        conductance(replace(alone, dissipation=0.002 + s), 0.2, 0.3, 0.02, 0.05).G_LL.item()
+        for s in (-h, h)
+    ]
+    of_wire = conductance_gradient(alone, 0.2, 0.3, 0.02, 0.05, parameters="dissipation")
+    assert of_wire.dG_LL_ddissipation.item() == pytest.approx((G[1] - G[0]) / (2 * h), rel=1e-3)
     at_rest = conductance_gradient(wire, 0.2, 0.3, 0.02, 0.05, parameters="dissipation")
     G = [
         conductance(replace(wire, dissipation=x), 0.2, 0.3, 0.02, 0.05).G_LL.item()

@@ -3,7 +3,7 @@
 Each channel gets an error of its own besides the noise, normal and independent from datum to datum:
 the discrepancy. Its size is the most probable one (MacKay, Neural Comput. 4, 415 (1992)): after
 Gauss–Newton steps the variance of a channel's errors is its mean square misfit, over the share of
-the data that the unknowns do not explain by their number alone. Steps and variances take turns.
+the data that is more than the unknowns which the data fix. Steps and variances take turns.
 
 What a model lacks is not independent from datum to datum. So the error bars are those of an answer
 with so much noise. They do not say how far off the missing part of the model leads.
@@ -31,6 +31,8 @@ TURNS = 10
 """Of steps and variances, at most."""
 SETTLED = 0.02
 """They end when no channel's error changes by more than this part."""
+MOST_EXPLAINED = 0.9
+"""Share of the data that unknowns may explain by their number alone."""
 KEPT = 4
 """So many optima are taken along, the most probable ones: with more noise another may be best."""
 
@@ -63,7 +65,7 @@ def best_effort(
     with_errors = observation
     for turn in range(TURNS):
         before = with_errors.noise
-        errors = errors_of(observation, best(optima).data)
+        errors = errors_of(observation, best(optima))
         with_errors = replace(observation, noise=errors)
         optima = _optima(with_errors, optima, cache, f"discrepancy.{turn}", step)
         if np.allclose(before, errors, rtol=SETTLED, atol=0.0):
@@ -72,17 +74,15 @@ def best_effort(
     return with_errors, Outcome(optima, drawn, outcome.attempts, outcome.rounds)
 
 
-def errors_of(observation: Observation, data: FloatArray) -> FloatArray:
+def errors_of(observation: Observation, optimum: Optimum) -> FloatArray:
     """Return the standard deviations of all errors, the noise included, in e²/h, shape (channel,).
 
-    Parameters
-    ----------
-    observation : Observation
-    data : array, shape (datum,)
-        Of the optimum.
+    Each unknown counts by how much the data fix it: one less its variance, since that of the prior
+    is one.
     """
-    unexplained = max(1 - len(observation.unknowns.names) / data.size, 1 / data.size)
-    misfit = np.nan_to_num(observation.misfit(data)) / np.sqrt(unexplained)
+    fixed = len(observation.unknowns.names) - np.trace(optimum.answer.covariance)
+    misfit = np.nan_to_num(observation.misfit(optimum.data))
+    misfit = misfit / np.sqrt(1 - min(fixed / optimum.data.size, MOST_EXPLAINED))
     return np.asarray(np.maximum(misfit, observation.noise))
 
 

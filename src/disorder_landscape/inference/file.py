@@ -210,7 +210,7 @@ def _asked(measurement: Path, settings: Settings, given: Mapping[str, str]) -> s
         "from_prior": settings.from_prior,
         "samples": settings.samples,
         "seed": settings.seed,
-        "discrepancy": settings.discrepancy,
+        **({"discrepancy": True} if settings.discrepancy else {}),
     }
     return json.dumps(asked, sort_keys=True)
 

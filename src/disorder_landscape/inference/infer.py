@@ -122,7 +122,8 @@ def infer(
         standard deviations of the posterior itself, of all of these, with _mean and _std. misfit
         (channel) in e²/h, of the most probable wire, NaN where nothing was measured. Of the mean:
         conductances G_LL … G_RL (mu, B, bias) and, on a finer grid, T_IV (lead, map_mu, map_B).
-        With discrepancy, the standard deviation of that error, discrepancy (channel) in e²/h.
+        With discrepancy, the standard deviation of that error, discrepancy (channel) in e²/h;
+        log_evidence then is that with these errors.
         P_topological (map_mu, map_B), the share of the samples with det r < 0. P_gap (gap, mu, B):
         the share whose lowest excitation, above zero modes where det r < 0, is above each energy
         gap in meV. Attributes: verdict ("converged", "not converged" or "not described by the

@@ -72,6 +72,8 @@ def result_of(observation: Observation, outcome: Outcome, samples: int, seed: in
     for name, belief in unknowns.parameters.items():
         k = unknowns.names.index(name)
         average, std = moments(belief, mean[k], np.sqrt(covariance[k, k]))
+        if (drawn := outcome.importance_samples) is not None:
+            average, std = drawn.moments_of(belief.value(drawn.samples[:, k]))
         for ending, dims, value in (
             ("", ("sample",), unknowns.parameter(name, X)),
             ("_mean", (), average),

@@ -58,8 +58,8 @@ def conductance_gradient(
     parameters : sequence of str, optional
         With respect to what: "V" (of every site), "mu", "B", "alpha", "barrier_left" and
         "barrier_right", at a temperature also "g", "gamma", "delta0", "critical_field", "bias" (an
-        offset of all biases) and "temperature"; by default all of these. "dissipation", which is
-        slow, is there if named.
+        offset of all biases) and "temperature"; by default all of these. "dissipation" is there if
+        named; it is slow where there is none, or the parent has its own.
     direction : mapping, optional
         How much each of these changes, one number, or one for each site for "V": then the result is
         the change of each conductance per unit of the direction (forward mode).

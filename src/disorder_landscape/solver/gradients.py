@@ -39,7 +39,8 @@ AT_A_TEMPERATURE = AT_ZERO | {
 }
 """The same at a temperature; bias is an offset of all of them."""
 UNITS = AT_A_TEMPERATURE | {"dissipation": "meV"}
-"""All of these; of a wire without dissipation the derivative by it is a difference."""
+"""All of these. The derivative by the dissipation is a difference where there is none, and where
+the parent has its own."""
 CORE_ORDER = (
     *("mu", "V_Z", "alpha", "gamma", "delta0", "lead_V_Z"),
     *("dissipation", "energy", "bias", "kT"),
@@ -113,7 +114,7 @@ def at_a_temperature(
 ) -> Gradient:
     """Return the derivatives at a temperature with respect to what is named.
 
-    Incomplete ones are NaN where the closed form has none, instead of differences of quadratures.
+    Incomplete ones are NaN where a set has no closed form, instead of differences of quadratures.
     """
     if np.isinf(wire.critical_field):
         found = _at_one_gap(wire, mu, B, bias, temperature, names, complete)
@@ -241,7 +242,7 @@ def _of_the_core(
         "bias": of["bias"],
         "temperature": BOLTZMANN * of["kT"],
     }
-    if wire.dissipation > 0:
+    if wire.dissipation > 0 and wire.parent_dissipation is None:  # else the parent's stays
         by["dissipation"] = of["dissipation"]
     by_energies = (by["mu"], by["gamma"], by["delta0"], by["bias"], abs(by["V"]).max(axis=-1))
     largest = BOLTZMANN * temperature * np.max([abs(of) for of in by_energies], axis=(0, 3, 4))

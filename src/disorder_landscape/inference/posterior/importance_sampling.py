@@ -110,6 +110,12 @@ class ImportanceSamples:
         covariance = (off.T * self.weight) @ off
         return Gaussian(mean, (covariance + covariance.T) / 2)
 
+    def moments_of(self, values: FloatArray) -> tuple[float, float]:
+        """Return mean and standard deviation of something of each sample, values (sample,)."""
+        mean = float(self.weight @ values)
+        variance = float(self.weight @ (values - mean) ** 2)
+        return mean, float(np.sqrt(variance / (1 - 1 / self.effective_sample_size)))
+
     def draw(self, rng: np.random.Generator, count: int) -> FloatArray:
         """Return samples (count, unknown) of equal weight, by systematic resampling."""
         share = np.cumsum(self.weight)
@@ -165,15 +171,18 @@ def importance_sampling(
         each = _numbers(mixture, count)
         now = [(part.scale, k) for part, k in zip(mixture, each, strict=True)]
         drawn += now
-        new = np.concatenate([proposal.draw(scale, rng, k) for scale, k in now])
+        inside = np.zeros(0, dtype=bool)
+        while not inside.any():  # of a few, all may be beyond the walls
+            new = np.concatenate([proposal.draw(scale, rng, k) for scale, k in now])
+            log_new = straightened.log_stretch(new)
+            inside = np.isfinite(log_new)
         name = f"importance_sampling.{'.'.join(map(str, seed))}.{number}"
-        log_new = straightened.log_stretch(new)
-        inside = np.isfinite(log_new)
         X = straightened.white_noise(new[inside])
         simulated = cache(name, partial(_simulated, observation, X))
         log_new[inside] -= 0.5 * np.array(simulated["height"])
         straight, log_posterior = np.concatenate([straight, new]), np.append(log_posterior, log_new)
-        least = LEAST_SHARE * min(most, int(np.isfinite(log_posterior).sum()))
+        counted = int(np.isfinite(log_posterior).sum())
+        least = LEAST_SHARE * min(most, counted)
         log_proposal = log_mixture(drawn, straight, proposal.log_density)
         found = tempered(straight, log_posterior - log_proposal, least)
         progress(number, simulated["misfit"], unknowns.site_std(found.moments.covariance))
@@ -183,7 +192,7 @@ def importance_sampling(
         count = most
         if number == 0:
             mixture = [Part(widened(part.scale, WIDER), part.share) for part in mixture]
-        elif found.effective_sample_size < KEPT * len(straight):
+        elif found.effective_sample_size < KEPT * counted:
             mixture = fitted(mixture, found)
         elif found.power == 1:
             count = min(most, max(SMALLEST_BATCH, found.still_needed))
@@ -198,7 +207,8 @@ def _numbers(mixture: Sequence[Part], count: int) -> list[int]:
 def fitted(mixture: Sequence[Part], found: ImportanceSamples) -> list[Part]:
     """Return a mixture that is nearer to the posterior, by one step of expectation maximisation.
 
-    A part's covariance is mixed with what it was, the more so the fewer samples it has.
+    That is the step for normal distributions: t distributions of the same scales are wider. A
+    part's covariance is mixed with what it was, the more so the fewer samples it has.
     """
     X, size = found.samples, found.samples.shape[1]
     share = np.maximum([part.share for part in mixture], np.finfo(float).tiny)

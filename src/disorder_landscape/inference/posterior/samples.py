@@ -50,15 +50,15 @@ def posterior_samples(
     share = shares(optima)
     counts = [k for k in range(len(optima)) if share[k] > NEGLIGIBLE]
     width = max(STRAIGHT * BOLTZMANN * observation.measurement.temperature, LEAST_WIDTH)
-    if len(counts) == 1 and unknowns.site_std(chosen.answer.covariance) < width:
+    straightened = Straightened.about(chosen.answer, unknowns)
+    may_be_normal = len(counts) == 1 and not straightened.parameters
+    if may_be_normal and unknowns.site_std(chosen.answer.covariance) < width:
         return None
     mixture = [Part(optima[k].answer, float(share[k])) for k in counts]
     needed = max(NORMAL ** len(unknowns.names), LEAST_NORMAL)
-    straightened = Straightened.about(chosen.answer, unknowns)
     batches = importance_sampling(observation, mixture, seed, cache, progress, straightened)
     for number, found in enumerate(batches):
-        may_be_normal = number == 0 and len(counts) == 1 and not straightened.parameters
-        if may_be_normal and normality(found, chosen.answer) > needed:
+        if number == 0 and may_be_normal and normality(found, chosen.answer) > needed:
             return None
     return found
 

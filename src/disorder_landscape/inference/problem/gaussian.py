@@ -53,12 +53,12 @@ def log_mixture(
     X: FloatArray,
     density: Callable[[Gaussian, FloatArray], FloatArray] = log_density,
 ) -> FloatArray:
-    """Return the logarithm of the density of a mixture of normal distributions, shape (sample,).
+    """Return the logarithm of the density of a mixture, shape (sample,).
 
     Parameters
     ----------
     drawn : sequence of (Gaussian, int)
-        The distributions, and how many samples were drawn from each, which is its weight.
+        The normal distributions, and how many samples were drawn from each, which is its weight.
     X : array, shape (sample, unknown)
     density : callable
         The logarithm of the density of each, if they are no normal distributions.
