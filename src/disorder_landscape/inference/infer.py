@@ -73,8 +73,8 @@ def infer(
     seed: int = 0,
     settings: InversionSettings | None = None,
     discrepancy: bool = False,
-    checkpoint: Path | None = None,
-    progress: Progress = silent,
+    checkpoint: str | Path | None = None,
+    progress: Progress | None = None,
 ) -> xr.Dataset:
     """Find the disorder that explains a measurement, with error bars and a verdict.
 
@@ -141,6 +141,9 @@ def infer(
     known = prior if isinstance(prior, Prior) else _config_of(prior)
     observation = observation_of(G, known, noise)
     check_progress(progress)
+    progress = silent if progress is None else progress
+    is_path = checkpoint is None or isinstance(checkpoint, str | Path)
+    require(is_path, "checkpoint", "be the path of a file", f"it is {shown(checkpoint)}")
     samples = whole_number_in("samples", samples, 2, 10_000)
     require(samples % 2 == 0, "samples", "be an even number", f"it is {samples}")
     seed = whole_number_in("seed", seed, 0, 2**31)
@@ -148,7 +151,7 @@ def infer(
     trained, start = _network(observation, prior, network)
     settings = settings or usual_settings(usable_network_features(trained, observation))
     fingerprint = _fingerprint(observation, trained, repr((seed, settings, start)))
-    found_before = Checkpoint(checkpoint, fingerprint)
+    found_before = Checkpoint(None if checkpoint is None else Path(checkpoint), fingerprint)
     found = invert(observation, trained, seed, settings, progress, found_before)
     said, with_errors = verdict(observation, found), observation
     if discrepancy:
