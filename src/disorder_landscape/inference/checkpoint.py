@@ -39,7 +39,7 @@ class Checkpoint:
         Everything that the results depend on.
     """
 
-    def __init__(self, path: Path | None = None, fingerprint: bytes = b"") -> None:
+    def __init__(self, path: str | Path | None = None, fingerprint: bytes = b"") -> None:
         self.path = None if path is None else Path(path)
         self._runs: dict[str, dict[str, Any]] = {}
         if self.path is not None and os.path.exists(self.path):

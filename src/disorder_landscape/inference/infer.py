@@ -151,7 +151,7 @@ def infer(
     trained, start = _network(observation, prior, network)
     settings = settings or usual_settings(usable_network_features(trained, observation))
     fingerprint = _fingerprint(observation, trained, repr((seed, settings, start)))
-    found_before = Checkpoint(None if checkpoint is None else Path(checkpoint), fingerprint)
+    found_before = Checkpoint(checkpoint, fingerprint)
     found = invert(observation, trained, seed, settings, progress, found_before)
     said, with_errors = verdict(observation, found), observation
     if discrepancy:

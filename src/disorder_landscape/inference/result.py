@@ -71,8 +71,9 @@ def result_of(observation: Observation, outcome: Outcome, samples: int, seed: in
     dataset = with_units(xr.Dataset(data, coords=coords))
     for name, belief in unknowns.parameters.items():
         k = unknowns.names.index(name)
-        average, std = moments(belief, mean[k], np.sqrt(covariance[k, k]))
-        if (drawn := outcome.importance_samples) is not None:
+        if (drawn := outcome.importance_samples) is None:
+            average, std = moments(belief, mean[k], np.sqrt(covariance[k, k]))
+        else:
             average, std = drawn.moments_of(belief.value(drawn.samples[:, k]))
         for ending, dims, value in (
             ("", ("sample",), unknowns.parameter(name, X)),

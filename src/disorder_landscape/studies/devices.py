@@ -7,7 +7,6 @@ answers are functions of (name, noise, index) alone.
 
 from __future__ import annotations
 
-import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -22,8 +21,8 @@ from disorder_landscape.config import Positive
 from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.studies.calibration import coverage, joint_coverage
-from disorder_landscape.studies.drawn_devices import Grid, drawn_device, measured_device
-from disorder_landscape.studies.fresh_wires import SEED, Noise, inverted
+from disorder_landscape.studies.drawn_devices import Grid, drawn_device, measured_device, seed_of
+from disorder_landscape.studies.fresh_wires import Noise, inverted
 from disorder_landscape.studies.rows import Row, rounded
 from disorder_landscape.studies.study import Derived, Place, Plan
 
@@ -105,7 +104,7 @@ def device_row(task: Task, group: Devices) -> dict[str, object]:
         each unknown `z_scores`, the truth's distance in standard deviations, and `widths`, the
         standard deviation as a share of the prior's.
     """
-    unknowns, seed = group.unknowns, [SEED, zlib.crc32(task.name.encode()), task.index]
+    unknowns, seed = group.unknowns, seed_of(task.name, task.index)
     device, truth = drawn_device(unknowns, group.grid, seed)
     observation = measured_device(device, unknowns, group.grid, task.noise, seed)
     found = inverted(observation, None, task.index)

@@ -6,6 +6,7 @@ errors. Devices and errors are functions of prior, grid, noise and seed alone.
 
 from __future__ import annotations
 
+import zlib
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -17,7 +18,7 @@ from disorder_landscape.inference.problem.observation import Observation, noise_
 from disorder_landscape.inference.problem.unknowns import Device, Unknowns
 from disorder_landscape.model.disorder import mean_reduction, smooth_noise
 from disorder_landscape.model.parameters import B_MAX, BIAS, TEMPERATURE, FloatArray, Nanowire
-from disorder_landscape.studies.fresh_wires import exact_conductances
+from disorder_landscape.studies.fresh_wires import SEED, exact_conductances
 from disorder_landscape.studies.study import Part
 
 
@@ -39,6 +40,11 @@ class Grid(Part):
         bias = np.linspace(BIAS[0], BIAS[-1], self.biases)
         G = np.zeros((mu.size, B.size, bias.size, 4))
         return Measurement(G, mu, B, bias, 0.0, Nanowire.barrier, TEMPERATURE)
+
+
+def seed_of(name: str, index: int) -> list[int]:
+    """Return the seed of a device of a group of this name."""
+    return [SEED, zlib.crc32(name.encode()), index]
 
 
 def drawn_device(

@@ -6,8 +6,6 @@ one with the largest log evidence should be that from which the device is.
 
 from __future__ import annotations
 
-import time
-import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
@@ -19,13 +17,11 @@ from pydantic import Field
 
 from disorder_landscape.config import Positive
 from disorder_landscape.inference.infer import SAMPLES
-from disorder_landscape.inference.invert import invert
 from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.result import evidence
-from disorder_landscape.inference.verdict import verdict
-from disorder_landscape.studies.drawn_devices import Grid, drawn_device, measured_device
-from disorder_landscape.studies.fresh_wires import SEED, Noise
+from disorder_landscape.studies.drawn_devices import Grid, drawn_device, measured_device, seed_of
+from disorder_landscape.studies.fresh_wires import Noise, inverted
 from disorder_landscape.studies.rows import Row, numbers, rounded
 from disorder_landscape.studies.study import Derived, Place, Plan
 
@@ -96,26 +92,23 @@ def rows_of(task: Task, group: Group) -> list[dict[str, object]]:
     list of dict
         For each `prior` the `log_evidence`, the `excess` of χ², the `verdict`, and `seconds`.
     """
-    seed = [SEED, zlib.crc32(f"{task.group}, {task.truth}".encode()), task.index]
+    seed = seed_of(f"{task.group}, {task.truth}", task.index)
     own = group.unknowns(task.truth)
     device, _ = drawn_device(own, group.grid, seed)
     measured = measured_device(device, own, group.grid, group.noise, seed)
     rows: list[dict[str, object]] = []
     for name in group.priors:
         observation = replace(measured, unknowns=group.unknowns(name))
-        begun = time.perf_counter()
-        found = invert(observation, None, task.index)
-        X = found.draw(np.random.default_rng([*seed, 2]), SAMPLES)
-        log_evidence = evidence(observation, found, X)["log_evidence"]
+        answer = inverted(observation, None, task.index)
+        X = answer.found.draw(np.random.default_rng([*seed, 2]), SAMPLES)
+        log_evidence = evidence(observation, answer.found, X)["log_evidence"]
         outcome: dict[str, object] = {
             "group": task.group,
             "truth": task.truth,
             "index": task.index,
             "prior": name,
             "log_evidence": Decimal(f"{log_evidence:.2f}"),
-            "excess": found.best.excess,
-            "verdict": verdict(observation, found),
-            "seconds": time.perf_counter() - begun,
+            **{key: answer.outcome[key] for key in ("excess", "verdict", "seconds")},
         }
         rows.append(rounded(outcome))
     return rows

@@ -112,9 +112,8 @@ class ImportanceSamples:
 
     def moments_of(self, values: FloatArray) -> tuple[float, float]:
         """Return mean and standard deviation of something of each sample, values (sample,)."""
-        mean = float(self.weight @ values)
-        variance = float(self.weight @ (values - mean) ** 2)
-        return mean, float(np.sqrt(variance / (1 - 1 / self.effective_sample_size)))
+        of = replace(self, samples=values[:, None]).moments
+        return float(of.mean[0]), float(np.sqrt(of.covariance[0, 0]))
 
     def draw(self, rng: np.random.Generator, count: int) -> FloatArray:
         """Return samples (count, unknown) of equal weight, by systematic resampling."""
