@@ -70,6 +70,17 @@ def test_a_damaged_file_is_refused_or_says_the_same(kind, times, made):
     assert refused >= 5 * times
 
 
+def test_a_heap_without_an_end_is_refused(tmp_path):
+    """HDF5 itself goes on forever at an object of no size."""
+    KINDS["measurement"].make(tmp_path)
+    path = tmp_path / KINDS["measurement"].file
+    whole = path.read_bytes()
+    objects = whole.index(b"GCOL") + 16
+    path.write_bytes(whole[:objects] + bytes(16) + whole[objects + 16 :])
+    with pytest.raises(ArgumentError, match="its global heap is damaged"):
+        KINDS["measurement"].read(tmp_path)
+
+
 def test_a_renamed_shard_is_refused(tmp_path):
     config = CONFIG.model_copy(update={"shard_size": 2})
     shards.generate(config, tmp_path)

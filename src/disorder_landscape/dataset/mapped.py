@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.config import DatasetConfig
+from disorder_landscape.dataset.hdf5 import open_hdf5
 from disorder_landscape.dataset.shards import (
     require_complete,
     shard_count,
@@ -69,7 +70,7 @@ def _mapped(path: Path, realizations: int) -> list[NDArray[np.float32]]:
     """Return each conductance of a shard, mapped, after looking at all of it once."""
     must = "hold only whole shards"
     try:
-        with h5py.File(path) as file:
+        with open_hdf5(path) as file:
             variables = [file[name] for name in CONDUCTANCES]
             finite = all(np.isfinite(variable[:]).all() for variable in variables)
             places = [(_offset(variable), variable.dtype, variable.shape) for variable in variables]

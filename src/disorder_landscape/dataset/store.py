@@ -13,6 +13,7 @@ import numpy as np
 import xarray as xr
 
 from disorder_landscape.arguments import ArgumentError, require
+from disorder_landscape.dataset.hdf5 import open_hdf5
 from disorder_landscape.files import replacing
 
 PACKAGES = ("disorder-landscape", "numpy", "scipy", "xarray", "h5netcdf")
@@ -94,7 +95,7 @@ def read_dataset(path: str | Path, variables: Iterable[str] = ()) -> xr.Dataset:
     """
     must = "be a netCDF file (version 4)"
     try:
-        with h5py.File(path) as raw:
+        with open_hdf5(path) as raw:
             dict(raw.attrs)  # h5netcdf fails badly where these are damaged
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of what is odd; what is missing is told below

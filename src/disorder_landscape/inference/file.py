@@ -9,10 +9,10 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 
-import h5py
 import xarray as xr
 
 from disorder_landscape.arguments import ArgumentError, require
+from disorder_landscape.dataset.hdf5 import open_hdf5
 from disorder_landscape.dataset.store import read_dataset, write_dataset
 from disorder_landscape.inference.infer import PAPERS_SETTINGS, infer
 from disorder_landscape.inference.plot import plot_inference
@@ -218,7 +218,7 @@ def _asked(measurement: Path, settings: Settings, given: Mapping[str, str]) -> s
 def _asked_of(output: Path) -> str:
     """Return what a result says that it answers; nothing if it is no result."""
     try:
-        with h5py.File(output) as file:
+        with open_hdf5(output) as file:
             asked = file.attrs.get(ASKED, "")
     except OSError:
         return ""
