@@ -157,7 +157,7 @@ def _is_inversion(prediction: xr.Dataset) -> bool:
 
 def _samples(prediction: xr.Dataset) -> list[Nanowire]:
     """Return the samples of an inversion, if the prediction is one and has enough of them."""
-    if not _is_inversion(prediction) or prediction.sizes["sample"] < LEAST_SAMPLES:
+    if not _is_inversion(prediction) or prediction.sizes.get("sample", 0) < LEAST_SAMPLES:
         return []
     return sample_wires(prediction)
 

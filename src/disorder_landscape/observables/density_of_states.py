@@ -101,8 +101,10 @@ def local_density_of_states(
 def _line(energy: FloatArray, kT: float) -> tuple[ComplexArray, ComplexArray]:
     """Return energies above the real axis, shape (z,), and weights of G there, (energy, z)."""
     step = SPACING * kT
-    count = int(np.ceil((energy[-1] - energy[0] + 2 * REACH * kT) / step))
-    z = energy[0] - REACH * kT + step * np.arange(count + 1) + 1j * HEIGHT * kT
+    reach = int(np.ceil(REACH / SPACING))
+    nearest = np.round((energy - energy[0]) / step)
+    about = nearest[:, None] + np.arange(-reach, reach + 1)  # nothing where no energy is near
+    z = energy[0] + step * np.unique(about) + 1j * HEIGHT * kT
     kernel = (
         step
         / (4 * kT)
