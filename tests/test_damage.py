@@ -4,6 +4,7 @@ Ten kinds of damage to each kind of file, once each in the fast tests and fifty 
 ones.
 """
 
+import h5py
 import numpy as np
 import pytest
 
@@ -78,6 +79,20 @@ def test_a_heap_without_an_end_is_refused(tmp_path):
     objects = whole.index(b"GCOL") + 16
     path.write_bytes(whole[:objects] + bytes(16) + whole[objects + 16 :])
     with pytest.raises(ArgumentError, match="its global heap is damaged"):
+        KINDS["measurement"].read(tmp_path)
+
+
+def test_numbers_that_are_nowhere_are_refused(tmp_path):
+    """HDF5 itself reads NaN where an index of zero says that they are."""
+    KINDS["measurement"].make(tmp_path)
+    path = tmp_path / KINDS["measurement"].file
+    with h5py.File(path) as file:
+        place = file["B"].id.get_chunk_info(0).byte_offset.to_bytes(8, "little")
+    whole = path.read_bytes()
+    assert whole.count(place) == 1
+    at = whole.index(place)
+    path.write_bytes(whole[:at] + bytes(32) + whole[at + 32 :])
+    with pytest.raises(ArgumentError, match="has lost what B held"):
         KINDS["measurement"].read(tmp_path)
 
 

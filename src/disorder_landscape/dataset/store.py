@@ -91,12 +91,13 @@ def read_dataset(path: str | Path, variables: Iterable[str] = ()) -> xr.Dataset:
     Raises
     ------
     ArgumentError
-        If it is missing, truncated, not netCDF, or lacks one of the variables.
+        If it is missing, truncated, not netCDF, or lacks one of the variables or its numbers.
     """
     must = "be a netCDF file (version 4)"
     try:
         with open_hdf5(path) as raw:
             dict(raw.attrs)  # h5netcdf fails badly where these are damaged
+            stored = {name for name, of in raw.items() if _is_stored(of)}
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of what is odd; what is missing is told below
             with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as file:
@@ -106,6 +107,21 @@ def read_dataset(path: str | Path, variables: Iterable[str] = ()) -> xr.Dataset:
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RuntimeError) as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise ArgumentError("file", must, f"'{path}' cannot be read: {reason}") from None
+    lost = [name for name, of in dataset.variables.items() if of.size and name not in stored]
+    require(not lost, "file", must, f"'{path}' has lost what {', '.join(map(str, lost))} held")
     missing = [name for name in variables if name not in dataset.variables]
     require(not missing, "file", must, f"'{path}' lacks {', '.join(missing)}")
     return dataset
+
+
+def _is_stored(member: h5py.Dataset | h5py.Group | h5py.Datatype) -> bool:
+    """Return whether numbers are there: HDF5 fills up with NaN where it finds none.
+
+    None are at the file's very beginning, where a damaged index says that they are.
+    """
+    if not isinstance(member, h5py.Dataset) or member.id.get_storage_size() == 0:
+        return False
+    pieces: list[h5py.h5d.StoreInfo] = []
+    if member.chunks is not None:
+        member.id.chunk_iter(pieces.append)
+    return all(piece.byte_offset > 0 for piece in pieces)
