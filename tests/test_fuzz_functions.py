@@ -562,6 +562,9 @@ FOUND = {
     "checkpoint is a text": lambda: infer(checkpoint="nowhere/nothing.json"),
     "no settings": lambda: infer(settings="x"),
     "an inversion without its samples": lambda: verify(INVERSION.drop_dims("sample")),
+    "complex potentials of an inversion": lambda: verify(
+        INVERSION.assign(potential_mean=INVERSION["potential_mean"] + 0j)
+    ),
     "no measurement": lambda: verify(measurements=None),
     "number for measurements": lambda: verify(measurements=3),
     "no disorder model": lambda: verify(config=3),

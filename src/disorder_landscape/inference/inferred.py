@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from disorder_landscape.arguments import number_in, require
+from disorder_landscape.arguments import number_in, reals, require
 from disorder_landscape.inference.problem.measurement import Measurement
 from disorder_landscape.inference.problem.parameters import PARAMETERS, Setup, nanowire
 from disorder_landscape.inference.problem.prior import FIXED, Prior
@@ -95,4 +95,4 @@ def _array(result: xr.Dataset, name: str, dims: tuple[str, ...]) -> FloatArray:
     require(name in result.variables, "prediction", MUST, f"it lacks {name}")
     found = result[name].dims
     require(found == dims, "prediction", MUST, f"the dims of {name} are {found}")
-    return np.asarray(result[name].to_numpy(), dtype=float)
+    return reals("prediction", result[name].to_numpy(), MUST)
