@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.stats import kstest
 
 from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.optimum import Optimum, optimum_at
@@ -22,6 +23,7 @@ from disorder_landscape.inference.posterior.importance_sampling import (
 )
 from disorder_landscape.inference.posterior.samples import normality, posterior_samples
 from disorder_landscape.inference.problem.gaussian import Gaussian, log_density
+from disorder_landscape.inference.problem.observation import objective
 from disorder_landscape.inference.problem.unknowns import unknowns_of
 from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED, verdict
 from disorder_landscape.model.parameters import BOLTZMANN
@@ -153,6 +155,35 @@ def test_samples_are_drawn_as_often_as_they_weigh():
     X = np.arange(4.0)[:, None]
     drawn = ImportanceSamples(X, np.array([0.5, 0.25, 0.25, 0.0])).draw(RNG, 400)
     np.testing.assert_array_equal(np.bincount(drawn[:, 0].astype(int)), [200, 100, 100])
+
+
+@pytest.mark.parametrize("wide", [False, True])
+def test_what_is_more_probable_is_right_over_many_wires(lines, wide):
+    """Of truths that are drawn from the posterior: uniform, with samples or Laplace's density."""
+    exact = posterior(lines)
+    drawn = None
+    if wide:
+        *_, drawn = importance_sampling(lines, [Part(widened(exact, 1.3), 1.0)], [0])
+    found = Outcome([optimum_at(lines, exact)], drawn)
+    truths = exact.draw(np.random.default_rng(8), 2000)
+    height = objective(lines, truths, lines.simulate(truths))
+    share = np.array([found.more_probable(float(one)) for one in height])
+    assert kstest(share, "uniform").statistic < (0.12 if wide else 0.03)
+
+
+def test_what_is_more_probable_does_not_depend_on_the_posteriors_shape():
+    """Of truths in one of two valleys, which Mahalanobis' distance puts far from the mean."""
+    truth = PRIOR.mean + 1.5 * WIDTH
+    folds = Folds(((truth - PRIOR.mean) @ SLOPE) ** 2, SLOPE, variance=4 * ONE)
+    about = [
+        Part(Gaussian(at, 0.05 * PRIOR.covariance), 0.5) for at in (truth, 2 * PRIOR.mean - truth)
+    ]
+    *_, drawn = importance_sampling(folds, about, [0])
+    found = Outcome([optimum_at(folds, about[0].scale)], drawn)
+    truths = drawn.draw(np.random.default_rng(1), 1000)
+    height = objective(folds, truths, folds.simulate(truths))
+    share = np.array([found.more_probable(float(one)) for one in height])
+    assert kstest(share, "uniform").statistic < 0.12
 
 
 def test_interrupted_importance_sampling_goes_on(lines, tmp_path):

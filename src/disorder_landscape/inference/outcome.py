@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.stats import chi2
 
 from disorder_landscape.inference.optimum import Optimum, best
 from disorder_landscape.inference.posterior.importance_sampling import ImportanceSamples
@@ -39,6 +40,17 @@ class Outcome:
     def is_posterior(self) -> bool:
         """Whether the error bars are those of the posterior, as far as is known."""
         return self.importance_samples is None or self.importance_samples.is_enough
+
+    def more_probable(self, height: float) -> float:
+        """Return how much of the posterior is more probable than this −2 log of its density.
+
+        It is uniform over [0, 1] where the density is that of the truth, whatever the posterior's
+        shape.
+        """
+        drawn, best = self.importance_samples, self.best
+        if drawn is None or drawn.height is None:
+            return float(chi2.cdf(height - best.objective, best.answer.mean.size))
+        return float(drawn.weight[drawn.height < height].sum())
 
     def draw(self, rng: np.random.Generator, count: int) -> FloatArray:
         """Return an even number of samples of the posterior, shape (sample, unknown)."""

@@ -19,7 +19,7 @@ from typing import ClassVar, Literal
 
 import numpy as np
 import pandas as pd
-from scipy.stats import chi2, f, kstest, norm, uniform
+from scipy.stats import kstest, norm, uniform
 
 from disorder_landscape.arguments import require
 from disorder_landscape.config import Positive
@@ -112,27 +112,9 @@ def coverage(table: pd.DataFrame) -> FloatArray:
     return np.array([(z < norm.ppf((1 + part) / 2)).mean() for part in COVERAGE])
 
 
-def joint_quantiles(table: pd.DataFrame) -> FloatArray:
-    """Return how much of each answer's normal distribution is nearer to its middle than the truth.
-
-    All unknowns count at once, by Mahalanobis' distance: uniform over the wires if error bars and
-    their correlations are right. `coverage` does not see correlations, nor a single wrong axis.
-    Where mean and covariance are those of samples with the effective sample size n, the square of
-    the distance is 1 + 1/n times Hotelling's T² (Ann. Math. Stat. 2, 360 (1931)).
-    """
-    squares, unknowns = table["mahalanobis"], table["z_scores"].str.split().str.len()
-    n = np.maximum(table["effective_sample_size"], unknowns + 1)
-    ratio = squares * (n - unknowns) / (unknowns * (n - 1) * (1 + 1 / n))
-    few = f.cdf(ratio, unknowns, n - unknowns)
-    return np.asarray(
-        np.where(table["effective_sample_size"].isna(), chi2.cdf(squares, unknowns), few)
-    )
-
-
 def joint_coverage(table: pd.DataFrame) -> FloatArray:
-    """Return which part of the truths the ellipsoids of COVERAGE hold."""
-    q = joint_quantiles(table)
-    return np.array([(q < part).mean() for part in COVERAGE])
+    """Return which part of the truths the most probable COVERAGE of the posteriors hold."""
+    return np.array([(table["more_probable"] < part).mean() for part in COVERAGE])
 
 
 def calibration(table: pd.DataFrame) -> dict[str, object]:
@@ -145,7 +127,7 @@ def calibration(table: pd.DataFrame) -> dict[str, object]:
         one: dict[str, object] = {"wires": len(some)}
         for which, quantiles, parts in (
             ("", norm.cdf(z_scores(some)), coverage(some)),
-            ("joint_", joint_quantiles(some), joint_coverage(some)),
+            ("joint_", some["more_probable"], joint_coverage(some)),
         ):
             inside = dict(zip(map(str, COVERAGE), parts.round(4).tolist(), strict=True))
             one[f"{which}p"] = round(float(kstest(quantiles, "uniform").pvalue), 4)

@@ -22,7 +22,7 @@ from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.studies.calibration import coverage, joint_coverage
 from disorder_landscape.studies.drawn_devices import Grid, drawn_device, measured_device, seed_of
-from disorder_landscape.studies.fresh_wires import Noise, inverted
+from disorder_landscape.studies.fresh_wires import Noise, inverted, more_probable
 from disorder_landscape.studies.rows import Row, rounded
 from disorder_landscape.studies.study import Derived, Place, Plan
 
@@ -99,8 +99,8 @@ def device_row(task: Task, group: Devices) -> dict[str, object]:
     -------
     dict
         `site_error` of V in meV, root mean square over the sites, and its error bar `spread`; the
-        same of V less its mean, `shape_error` and `shape_spread`; `mahalanobis`, the squared
-        distance of the truth in standard deviations; the outcome of `Inverted`; and, as text, for
+        same of V less its mean, `shape_error` and `shape_spread`; `more_probable`, how much of
+        the posterior is more probable than the truth; the outcome of `Inverted`; and, as text, for
         each unknown `z_scores`, the truth's distance in standard deviations, and `widths`, the
         standard deviation as a share of the prior's.
     """
@@ -119,7 +119,7 @@ def device_row(task: Task, group: Devices) -> dict[str, object]:
         "spread": found.outcome["spread"],
         "shape_error": off.std(),
         "shape_spread": unknowns.shape_std(covariance),
-        "mahalanobis": found.answer.squared_distance(truth),
+        "more_probable": more_probable(observation, found.found, truth),
     }
     return {
         **rounded(row | found.outcome),

@@ -24,7 +24,11 @@ from disorder_landscape.inference.invert import invert
 from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.measurement import Measurement, empty_measurement
-from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
+from disorder_landscape.inference.problem.observation import (
+    Observation,
+    noise_of_channels,
+    objective,
+)
 from disorder_landscape.inference.problem.unknowns import unknowns_of
 from disorder_landscape.inference.verdict import verdict
 from disorder_landscape.learning.model import TrainedModel, load_model
@@ -171,6 +175,16 @@ def inverted(observation: Observation, network: TrainedModel | None, seed: int) 
         "seconds": seconds,
     }
     return Inverted(found, outcome)
+
+
+def more_probable(observation: Observation, found: Outcome, truth: FloatArray) -> float:
+    """Return how much of the posterior is more probable than the truth (unknown,).
+
+    Over wires it is uniform if the posteriors are right, all unknowns at once. `coverage` does not
+    see correlations, nor a single wrong axis.
+    """
+    height = objective(observation, truth, observation.simulate(truth[None])[0])
+    return found.more_probable(float(height))
 
 
 def wrong(table: pd.DataFrame) -> pd.Series:

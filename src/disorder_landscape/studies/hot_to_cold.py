@@ -20,7 +20,7 @@ from disorder_landscape.inference.problem.measurement import simulated
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.observables.visibility import topological_visibility
-from disorder_landscape.studies.fresh_wires import Noise, inverted, measured_wire
+from disorder_landscape.studies.fresh_wires import Noise, inverted, measured_wire, more_probable
 from disorder_landscape.studies.rows import Row, rounded
 from disorder_landscape.studies.study import Derived, Place, Plan
 from disorder_landscape.studies.temperatures import Temperature
@@ -80,7 +80,7 @@ class HotToColdPlan(Plan):
         Returns
         -------
         list of dict
-            `site_error` of V in meV and `mahalanobis`, as in `inversion_row`; of each of TARGETS
+            `site_error` of V in meV and `more_probable`, as in `inversion_row`; of each of TARGETS
             the mean and the mean square of the truth, the mean square of the prediction's error,
             and the share of the truths in the INTERVAL; the outcome of `Inverted`.
         """
@@ -93,7 +93,7 @@ class HotToColdPlan(Plan):
             "noise": task.noise,
             "index": task.index,
             "site_error": observation.unknowns.site_distance(mean, truth),
-            "mahalanobis": found.answer.squared_distance(truth),
+            "more_probable": more_probable(observation, found.found, truth),
         }
         X = found.found.draw(np.random.default_rng([task.index, 5]), self.samples)
         predicted = cold_wires(observation, X, self.cold)

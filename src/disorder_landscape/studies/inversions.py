@@ -16,6 +16,7 @@ from disorder_landscape.studies.fresh_wires import (
     Task,
     fresh_wire,
     inverted,
+    more_probable,
     network_of,
 )
 from disorder_landscape.studies.rows import rounded
@@ -41,7 +42,8 @@ def inversion_row(task: Task) -> dict[str, object]:
         V errors in meV, root mean square over the sites; the errors of α in meV nm; `scaled_error`,
         the mean square error of the paper's labels in units of their variance, which is 1 − R²;
         `z_scores`, the true unknowns' distances from the answer in its standard deviations;
-        `mahalanobis`, all of them together squared; and the outcome of `Inverted`.
+        `more_probable`, how much of the posterior is more probable than the truth; and the outcome
+        of `Inverted`.
     """
     observation, truth = fresh_wire(task)
     unknowns, network = observation.unknowns, network_of(task.model, task.noise)
@@ -62,7 +64,7 @@ def inversion_row(task: Task) -> dict[str, object]:
         "scaled_error": ((answered - true) ** 2 / variance)[papers].mean(),
         "network_alpha_error": abs(alpha(guess) - alpha(truth)),
         "alpha_error": abs(alpha(mean) - alpha(truth)),
-        "mahalanobis": found.answer.squared_distance(truth),
+        "more_probable": more_probable(observation, found.found, truth),
         **found.outcome,
     }
     z = (truth - mean) / np.sqrt(np.diag(found.answer.covariance))

@@ -76,6 +76,8 @@ class ImportanceSamples:
     log_mean_weight: float = np.nan
     """The logarithm of the mean of the weights before they are normalised: of the evidence, where
     these are densities."""
+    height: FloatArray | None = None
+    """−2 log of the posterior density at each, up to the constant of `objective`."""
 
     @property
     def effective_sample_size(self) -> float:
@@ -163,7 +165,8 @@ def importance_sampling(
     most = max(LARGEST_BATCH, LARGEST_BATCH_PER_UNKNOWN * len(unknowns.names))
     count = FIRST_BATCH
     drawn: list[tuple[Gaussian, int]] = []
-    straight, log_posterior = np.empty((0, len(unknowns.names))), np.empty(0)
+    straight, height = np.empty((0, len(unknowns.names))), np.empty(0)
+    log_stretch = np.empty(0)
     mixture = [Part(straightened.of_gaussian(part.scale), part.share) for part in mixture]
     for number in range(ITERATIONS):
         rng = np.random.default_rng([*seed, number])
@@ -178,14 +181,17 @@ def importance_sampling(
         name = f"importance_sampling.{'.'.join(map(str, seed))}.{number}"
         X = straightened.white_noise(new[inside])
         simulated = cache(name, partial(_simulated, observation, X))
-        log_new[inside] -= 0.5 * np.array(simulated["height"])
-        straight, log_posterior = np.concatenate([straight, new]), np.append(log_posterior, log_new)
+        height_new = np.full(len(new), np.inf)
+        height_new[inside] = simulated["height"]
+        straight, height = np.concatenate([straight, new]), np.append(height, height_new)
+        log_stretch = np.append(log_stretch, log_new)
+        log_posterior = log_stretch - 0.5 * height
         counted = int(np.isfinite(log_posterior).sum())
         least = LEAST_SHARE * min(most, counted)
         log_proposal = log_mixture(drawn, straight, proposal.log_density)
         found = tempered(straight, log_posterior - log_proposal, least)
         progress(number, simulated["misfit"], unknowns.site_std(found.moments.covariance))
-        yield replace(found, samples=straightened.white_noise(straight))
+        yield replace(found, samples=straightened.white_noise(straight), height=height)
         if found.is_enough:
             return
         count = most
