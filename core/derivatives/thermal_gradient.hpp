@@ -81,7 +81,7 @@ inline void thermal_gradient(const ThermalGradientGrid& at, double tolerance, do
     std::map<int, ShiftedAverages> shifted;  // of each number of nodes
     for (const SetModel& model : models)
         if (model.nodes > 0 && !shifted.contains(model.nodes))
-            shifted.try_emplace(model.nodes, EnergyPlan(grid.omega, grid.omega_count, at.kT, model.nodes, Reach::WINDOW));
+            shifted.try_emplace(model.nodes, PlanKey(grid, at.kT, model.nodes, wire).plan(grid, at.kT));
     size_t values = size_t(grid.omega_count) * 4;
     in_parallel(grid.mu_count * grid.B_count, stop, [&](int set) {
         double *by_V = out.by_V + set * values * wire.sites, *others = out.others + set * values * CHANGES;

@@ -177,9 +177,25 @@ inline void average_sets(const Grid& grid, const EnergyPlan& plan, const SetInde
 
 }  // namespace detail
 
+// What tells the plans of the wires of a grid apart.
+struct PlanKey {
+    int nodes;
+    Reach reach;
+    double delta0, resolved;  // delta0 is infinite where the window ends below the gap
+    auto operator<=>(const PlanKey&) const = default;
+
+    PlanKey(const Grid& grid, double kT, int nodes, const Wire& wire)
+        : nodes(nodes), reach(reach_of(grid.omega, grid.omega_count, kT, wire.delta0)),
+          delta0(reach == Reach::WINDOW ? INFINITY : wire.delta0),
+          resolved(reach == Reach::HOT_GAP ? resolved_up_to(wire, nodes) : LAST) {}
+    EnergyPlan plan(const Grid& grid, double kT) const {
+        return EnergyPlan(grid.omega, grid.omega_count, kT, nodes, reach, delta0, resolved);
+    }
+};
+
 // The plans of some wires in one round: one for all whose window ends below the gap, others for those who differ.
 class EnergyPlans {
-    std::map<std::tuple<int, double, double>, EnergyPlan> plans;
+    std::map<PlanKey, EnergyPlan> plans;
     std::vector<const EnergyPlan*> of_wire;
 
 public:
@@ -187,15 +203,14 @@ public:
     template <class Asked>
     EnergyPlans(const Grid& grid, double kT, int round, Asked asked) {
         for (int w = 0; w < grid.wire_count; ++w) {
-            double delta0 = grid.wires[w].delta0;
-            Reach reach = reach_of(grid.omega, grid.omega_count, kT, delta0);
-            int nodes = nodes_in_round(round, reach, grid.wires[w]);
+            const Wire& wire = grid.wires[w];
+            int nodes = nodes_in_round(round, reach_of(grid.omega, grid.omega_count, kT, wire.delta0), wire);
             of_wire.push_back(nullptr);
             if (nodes == 0 || !asked(w)) continue;
-            bool below = reach == Reach::WINDOW;
-            double resolved = reach == Reach::HOT_GAP ? resolved_up_to(grid.wires[w], nodes) : LAST;
-            std::tuple key(nodes, below ? INFINITY : delta0, resolved);
-            of_wire.back() = &plans.try_emplace(key, grid.omega, grid.omega_count, kT, nodes, reach, delta0, resolved).first->second;
+            const PlanKey key(grid, kT, nodes, wire);
+            auto known = plans.find(key);
+            if (known == plans.end()) known = plans.emplace(key, key.plan(grid, kT)).first;
+            of_wire.back() = &known->second;
         }
     }
     const EnergyPlan* of(int wire) const { return of_wire[wire]; }

@@ -22,6 +22,8 @@ TRUSTED = 3e-3
 """Derivatives with a larger estimated error, as a share of the largest of their (μ, B), are not
 used: some two in a hundred. (With all of them one answer of ten at 0.001 e²/h had error bars that
 were half of what they should be along one direction.)"""
+TRUSTED_NEAR_GAP = 3e-2
+"""The same where the thermal window reaches the gap: nearly all of the error is in ∂/∂Δ₀ there."""
 POINTS_AT_ONCE = 4
 """Chemical potentials at which derivatives by all sites are in memory together."""
 FEW = 7
@@ -130,6 +132,8 @@ class Observation:
         wire, at = device.wire, self._as_set_up(device)
         if not _closed_form_has_slopes(wire, at):
             return None
+        cold = gradients.has_closed_form(_at_largest_field(wire, at), at.bias, at.temperature)
+        trusted = TRUSTED if cold else TRUSTED_NEAR_GAP
         G, slopes, doubtful = [], [], []
         for points in range(0, at.mu.size, POINTS_AT_ONCE):
             some = slice(points, points + POINTS_AT_ONCE)
@@ -145,7 +149,7 @@ class Observation:
             part = replace(self.measurement, mu=self.measurement.mu[some])
             G.append(found.conductance)
             slopes.append(np.nan_to_num(self.unknowns.slopes(x, part, found.by)))
-            exact = (found.gradient_error <= TRUSTED) & (found.error <= SOLVER_ERROR)
+            exact = (found.gradient_error <= trusted) & (found.error <= SOLVER_ERROR)
             doubtful.append(~exact)
         slope = np.concatenate(slopes)[self.is_measured].T
         return Slopes(np.concatenate(G)[self.is_measured], slope, np.concatenate(doubtful))
@@ -178,8 +182,12 @@ def _closed_form_has_slopes(wire: Nanowire, at: Measurement) -> bool:
     """Return whether there are derivatives of a wire at these settings in closed form."""
     if at.theta != 0 or at.temperature == 0:
         return False
-    narrowest = wire.in_field(float(abs(at.B).max()))
-    return gradients.has_closed_form(narrowest, at.bias, at.temperature)
+    return gradients.has_slopes(_at_largest_field(wire, at), at.bias, at.temperature)
+
+
+def _at_largest_field(wire: Nanowire, at: Measurement) -> Nanowire:
+    """Return the wire with its narrowest gap."""
+    return wire.in_field(float(abs(at.B).max()))
 
 
 def errors_variance(noise: ArrayLike) -> FloatArray:
