@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 from scipy.stats import chi2
 
-from disorder_landscape import ArgumentError
+from disorder_landscape import ArgumentError, conductance
 from disorder_landscape.chain import FIVE, TEN, THIRTY, shipped_model
 from disorder_landscape.claims.claim import ResultMissingError
 from disorder_landscape.claims.derived import fixed_combinations, thirty_components, true_answers
@@ -24,16 +24,27 @@ from disorder_landscape.config import DatasetConfig
 from disorder_landscape.executors.executor import Share
 from disorder_landscape.inference.invert import usable_network_features
 from disorder_landscape.inference.problem.measurement import empty_measurement
+from disorder_landscape.inference.problem.prior import Prior
+from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED
 from disorder_landscape.model.parameters import Nanowire
+from disorder_landscape.model.quantities import CONDUCTANCES
 from disorder_landscape.studies import inversions, runner
 from disorder_landscape.studies.calibration import coverage, joint_coverage
+from disorder_landscape.studies.drawn_devices import named_prior
 from disorder_landscape.studies.fresh_wires import Task, measured_wire, model_of, wrong
 from disorder_landscape.studies.plan import load_study
 from disorder_landscape.studies.rows import as_text, read_rows, write_rows
 from disorder_landscape.studies.study import Place
 from disorder_landscape.studies.uniqueness import Setting, information_rows
-from disorder_landscape.studies.unmodelled import KINDS, NOTHING, changed
+from disorder_landscape.studies.unmodelled import (
+    KINDS,
+    MODEL_ALONE,
+    NOTHING,
+    OTHER_BARRIERS,
+    changed,
+    predicted_at,
+)
 
 PLAN = """
 kind = "inversions"
@@ -216,15 +227,37 @@ def test_the_table_of_what_the_model_lacks_counts_both_checks(tmp_path):
     good = {"site_error": 0.001, "spread": 0.001, "verdict": CONVERGED, "p_predictive": 0.5}
     bad = good | {"site_error": 0.1, "verdict": NOT_CONVERGED, "p_predictive": 0.0099}
     rows = [
-        {"kind": "gap", "departure": 2.0} | some
+        {"kind": "gap", "prior": MODEL_ALONE, "departure": 2.0} | some
         for some in (bad, bad, bad | {"verdict": CONVERGED}, bad | good | {"site_error": 0.1}, good)
     ]
-    rows += [{"kind": "nothing", "departure": 0.0} | good | {"p_predictive": 0.001}]
+    rows += [rows[0] | {"kind": "nothing", "departure": 0.0} | good | {"p_predictive": 0.001}]
+    rows += [rows[0] | {"prior": "wide"} | good]
     path = tmp_path / "rows.csv"
     pd.DataFrame(rows).to_csv(path, index=False)
-    nothing, gap = unmodelled_table(path).splitlines()[2:]
+    nothing, gap, wide = unmodelled_table(path).splitlines()[2:]
     assert nothing.endswith("| the model is right | 1 | 0 | 1, 1 | 0 | 0, 0 | 0 | 0, 1 |")
+    assert nothing.startswith("| the model alone |")
+    assert wide.startswith("| `wide.toml` | Δ₀ 20 % smaller, or larger | 1 |")
     assert gap.endswith("| 5 | 2 | 1e+02, 1e+02 | 4 | 2, 3 | 1 | 0, 0 |")
+
+
+@pytest.mark.parametrize("prior", [None, "wide"])
+def test_the_truth_predicts_what_is_measured_at_other_barriers(prior):
+    """Of a device whose own barriers and temperature may be unknown."""
+    config = DatasetConfig(realizations=1, components=5, mu_points=2, B_points=2)
+    settings = empty_measurement(config)
+    given = Prior.of_dataset(config) if prior is None else named_prior(prior)
+    unknowns = Unknowns(given.for_measurement(settings))
+    X = np.random.default_rng(0).normal(size=(2, len(unknowns.names)))
+    elsewhere = replace(settings, barrier=OTHER_BARRIERS)
+    found = predicted_at(elsewhere, unknowns, X)
+    for device, data in zip(unknowns.devices(X, settings), found, strict=True):
+        wire, setup = replace(device.wire, barrier=(25.0, 10.0)), device.setup
+        G = conductance(wire, setup.mu, settings.B, setup.bias, setup.temperature)
+        expected = np.stack([G[name].to_numpy() for name in CONDUCTANCES], axis=-1)
+        np.testing.assert_allclose(data, expected.ravel(), atol=1e-12)
+    if prior is None:
+        assert unknowns.devices(X, settings)[0].setup.temperature == settings.temperature
 
 
 @pytest.mark.parametrize("kind", list(KINDS))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from pathlib import Path
 
 import pandas as pd
@@ -12,7 +13,7 @@ from disorder_landscape.inference.verdict import CONVERGED
 from disorder_landscape.inference.verification.comparison import UNLIKELY
 from disorder_landscape.studies.calibration import coverage, joint_coverage
 from disorder_landscape.studies.fresh_wires import wrong
-from disorder_landscape.studies.unmodelled import KINDS
+from disorder_landscape.studies.unmodelled import KINDS, MODEL_ALONE
 
 INVERSIONS = REPOSITORY / "results" / "inversions.csv"
 COMPONENTS = REPOSITORY / "results" / "components.csv"
@@ -46,7 +47,9 @@ COMPONENTS_COLUMNS = (
     "wrong: flagged, unflagged",
     "seconds, one core",
 )
+PRIORS_OF_UNMODELLED = {MODEL_ALONE: "the model alone", "wide": "`wide.toml`"}
 UNMODELLED_COLUMNS = (
+    "inverted with",
     "in truth",
     "wires",
     "G changed by (noise)",
@@ -127,8 +130,8 @@ def unmodelled_table(path: Path = UNMODELLED) -> str:
     """Return a Markdown table of what is noticed of wires that the model does not describe."""
     table = pd.read_csv(path)
     rows = []
-    for kind, truth in KINDS.items():
-        some = table[table["kind"] == kind]
+    for (prior, known), (kind, truth) in product(PRIORS_OF_UNMODELLED.items(), KINDS.items()):
+        some = table[(table["kind"] == kind) & (table["prior"] == prior)]
         if some.empty:
             continue
         is_wrong = wrong(some)
@@ -136,6 +139,7 @@ def unmodelled_table(path: Path = UNMODELLED) -> str:
         error = 1e3 * some["site_error"]
         rows.append(
             (
+                known,
                 truth,
                 str(len(some)),
                 f"{some['departure'].median():.2g}",

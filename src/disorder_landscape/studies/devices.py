@@ -16,22 +16,25 @@ import numpy as np
 import pandas as pd
 from pydantic import Field
 
-from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.config import Positive
-from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.studies.calibration import coverage, joint_coverage
-from disorder_landscape.studies.drawn_devices import Grid, drawn_device, measured_device, seed_of
+from disorder_landscape.studies.drawn_devices import (
+    Grid,
+    drawn_device,
+    measured_device,
+    named_prior,
+    seed_of,
+)
 from disorder_landscape.studies.fresh_wires import Noise, inverted, more_probable
 from disorder_landscape.studies.rows import Row, rounded
 from disorder_landscape.studies.study import Derived, Place, Plan
 
 NUMBERS = (
-    *("noise", "site_error", "spread", "shape_error", "shape_spread", "mahalanobis"),
+    *("noise", "site_error", "spread", "shape_error", "shape_spread", "more_probable"),
     *("effective_sample_size", "excess", "seconds"),
 )
 """Columns of the table."""
-PRIORS = REPOSITORY / "configs" / "priors"
 
 
 @dataclass(frozen=True, order=True)
@@ -56,7 +59,7 @@ class Devices(Grid):
     @cached_property
     def unknowns(self) -> Unknowns:
         """What is unknown of the devices."""
-        return Unknowns(Prior.from_toml(PRIORS / f"{self.prior}.toml").for_measurement(self.grid))
+        return Unknowns(named_prior(self.prior).for_measurement(self.grid))
 
 
 class DevicesPlan(Plan):

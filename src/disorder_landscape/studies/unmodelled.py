@@ -2,7 +2,8 @@
 
 Each row inverts a fresh wire of `studies.fresh_wires`, of which one thing is other than the model
 has it, and asks two checks: the verdict, and measurements at other barriers (K'_full of S-II.1),
-which the inversion has not seen. Rows of the kind "nothing" count false alarms.
+which the inversion has not seen. Rows of the kind "nothing" count false alarms. With a prior that
+leaves the thing open, the answer should be right.
 """
 
 from __future__ import annotations
@@ -20,10 +21,15 @@ from disorder_landscape.inference.problem.measurement import (
     empty_measurement,
     simulated,
 )
-from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
-from disorder_landscape.inference.problem.unknowns import unknowns_of
+from disorder_landscape.inference.problem.observation import (
+    Observation,
+    errors_variance,
+    noise_of_channels,
+)
+from disorder_landscape.inference.problem.unknowns import Unknowns, unknowns_of
 from disorder_landscape.inference.verification.predictive import predictive_p
 from disorder_landscape.model.parameters import FloatArray, Nanowire
+from disorder_landscape.studies.drawn_devices import named_prior
 from disorder_landscape.studies.fresh_wires import (
     SEED,
     Noise,
@@ -49,15 +55,18 @@ KINDS: dict[Kind, str] = {
 """What is other than the model has it; of two, the index takes turns."""
 HOT, DISSIPATION, OFFSET = 0.1, 1e-3, 5e-3
 """In K, meV and meV."""
+MODEL_ALONE = "model"
+"""Of a task: all but the disorder and α is taken as known."""
 OTHER_BARRIERS = (25.0, 10.0)
 """Of the measurements that check the answer, left and right in meV."""
 
 
 @dataclass(frozen=True, order=True)
 class Task:
-    """One inversion: a shipped model's name, the noise in e²/h, what is other, and which wire."""
+    """One inversion: a shipped model's name, a prior's, the noise in e²/h, the kind, and a wire."""
 
     model: str
+    prior: str
     noise: float
     kind: str
     index: int
@@ -67,6 +76,8 @@ class Wires(Part):
     """So many wires of each model, with each thing other than the model has it."""
 
     models: tuple[ShippedModel, ...]
+    prior: str = MODEL_ALONE
+    """Name of a file in configs/priors, without its ending, for an inversion without a network."""
     noise: tuple[Noise, ...]
     """In e²/h."""
     other: tuple[Kind, ...]
@@ -84,12 +95,12 @@ class UnmodelledPlan(Plan):
     """Of the points of μ and B, how many those measurements are apart."""
     wires: tuple[Wires, ...]
 
-    keys: ClassVar = ("model", "noise", "kind", "index")
+    keys: ClassVar = ("model", "prior", "noise", "kind", "index")
 
     def tasks(self) -> Sequence[Task]:
-        """Return the tasks, by model, noise, kind and index."""
+        """Return the tasks, by model, prior, noise, kind and index."""
         return sorted(
-            Task(model, noise, kind, index)
+            Task(model, group.prior, noise, kind, index)
             for group in self.wires
             for model in group.models
             for noise in group.noise
@@ -150,35 +161,46 @@ def unmodelled_row(task: Task, samples: int, every: int) -> dict[str, object]:
     """
     network = network_of(task.model, task.noise)
     config = network.config.dataset.model_copy(update={"seed": SEED})
-    unknowns, noise = unknowns_of(config), noise_of_channels(task.noise)
-    one = realization(config, task.index)
-    settings = empty_measurement(config)
+    noise, one = noise_of_channels(task.noise), realization(config, task.index)
+    settings, unknowns = empty_measurement(config), unknowns_of(config)
+    alone = task.prior == MODEL_ALONE
+    if not alone:
+        unknowns = Unknowns(named_prior(task.prior).for_measurement(settings))
     G = true_conductances(task, one.wire, settings)
     observation = Observation(measured(settings, G, task.noise, task.index), unknowns, noise)
-    found = inverted(observation, network, task.index)
+    found = inverted(observation, network if alone else None, task.index)
     mean = found.answer.mean
     true, _ = changed(task.kind, task.index, one.wire, settings)
     change = G - simulated(one.wire, settings)
-    other_settings = replace(
+    elsewhere = replace(
         settings, mu=config.mu[::every], B=config.B[::every], barrier=OTHER_BARRIERS
     )
-    other_wire = replace(one.wire, barrier=OTHER_BARRIERS)
-    other_G = true_conductances(task, other_wire, other_settings)
-    further = Observation(
-        measured(other_settings, other_G, task.noise, task.index, 3), unknowns, noise
-    )
+    other_G = true_conductances(task, replace(one.wire, barrier=OTHER_BARRIERS), elsewhere)
+    further = measured(elsewhere, other_G, task.noise, task.index, 3).G.ravel()
     rng = np.random.default_rng([SEED, task.index, 4])
-    predicted = further.simulate(found.found.draw(rng, samples))
+    predicted = predicted_at(elsewhere, unknowns, found.found.draw(rng, samples))
+    variance = np.broadcast_to(errors_variance(noise), other_G.shape).ravel()
     return rounded(
         {
             "model": task.model,
+            "prior": task.prior,
             "noise": task.noise,
             "kind": task.kind,
             "index": task.index,
             "departure": float(np.sqrt((change**2).mean()) / task.noise),
             "site_error": float(np.sqrt(((unknowns.potential(mean) - true.potential) ** 2).mean())),
             "alpha_error": abs(unknowns.parameter("alpha", mean) - one.alpha),
-            "p_predictive": predictive_p(predicted, further.data, further.variance, rng),
+            "p_predictive": predictive_p(predicted, further, variance, rng),
             **found.outcome,
         }
     )
+
+
+def predicted_at(settings: Measurement, unknowns: Unknowns, X: FloatArray) -> FloatArray:
+    """Return data that samples X (sample, unknown) predict at the barriers of other settings."""
+    predicted = []
+    for device in unknowns.devices(X, settings):
+        wire, setup = replace(device.wire, barrier=settings.barrier), device.setup
+        as_set_up = replace(settings, mu=setup.mu, bias=setup.bias, temperature=setup.temperature)
+        predicted.append(simulated(wire, as_set_up).ravel())
+    return np.array(predicted)
