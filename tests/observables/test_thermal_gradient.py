@@ -14,9 +14,10 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from disorder_landscape import ArgumentError, Nanowire, conductance, conductance_gradient
+from disorder_landscape.inference.problem.observation import TRUSTED_NEAR_GAP
 from disorder_landscape.model.disorder import disorder_realization
 from disorder_landscape.model.quantities import AXES, CONDUCTANCES
-from disorder_landscape.solver import compiled
+from disorder_landscape.solver import compiled, gradients
 from disorder_landscape.solver.quadrature import thermal_quadrature
 from random_wires import fields, mus, random_wire, seeds
 
@@ -230,6 +231,34 @@ def test_hot_and_lossy_wires_have_differences():
         for x in (0, 1e-5)
     ]
     assert at_rest.dG_LL_ddissipation.item() == pytest.approx((G[1] - G[0]) / 1e-5, rel=1e-2)
+
+
+@pytest.mark.parametrize(
+    "name", ["V", "mu", "B", "alpha", "gamma", "delta0", "bias", "temperature"]
+)
+@pytest.mark.parametrize("dissipation", [0.0, 1e-3])
+def test_slopes_go_on_until_the_gap_is_near(name, dissipation):
+    """At 100 mK, where the thermal window reaches the gap; the estimate is that of ∂/∂Δ₀."""
+    wire = replace(random_wire(5, sites=100), delta0=0.12, dissipation=dissipation)
+    mu, B, temperature = 0.3, 0.4, 0.1
+    assert not gradients.has_closed_form(wire, BIAS, temperature)
+    assert gradients.has_slopes(wire, BIAS, temperature)
+    point = np.array([mu]), np.array([B]), BIAS, temperature
+    found = gradients.at_a_temperature(wire, *point, [name], complete=False)
+    along = np.cos(np.pi * 3 * (np.arange(wire.sites) + 0.5) / wire.sites)
+    slope = found.by[name][0, 0] @ along if name == "V" else found.by[name][0, 0]
+    right, uncertain = expected(name, wire, mu, B, temperature, along)
+    share = found.gradient_error.item()
+    assert share < TRUSTED_NEAR_GAP
+    allowed = share if name == "delta0" else 3e-3
+    assert abs(slope - right).max() < allowed * abs(right).max() + uncertain
+
+
+def test_slopes_end_where_the_gap_is_near():
+    wire = Nanowire(np.zeros(4), delta0=0.12)
+    assert gradients.has_slopes(wire, BIAS, 0.115)
+    assert not gradients.has_slopes(wire, BIAS, 0.117)
+    assert not gradients.has_slopes(replace(wire, parent_dissipation=1e-3), BIAS, 0.05)
 
 
 def test_sets_without_a_model_have_differences(monkeypatch):
