@@ -71,13 +71,24 @@ def test_a_damaged_file_is_refused_or_says_the_same(kind, times, made):
     assert refused >= 5 * times
 
 
-def test_a_heap_without_an_end_is_refused(tmp_path):
-    """HDF5 itself goes on forever at an object of no size."""
+@pytest.mark.parametrize("object_", [0, 1])
+@pytest.mark.parametrize("damage", ["no size", "size beyond the heap"])
+def test_a_heap_without_an_end_is_refused(object_, damage, tmp_path):
+    """HDF5 itself goes on forever, wherever in the file the heap is."""
     KINDS["measurement"].make(tmp_path)
     path = tmp_path / KINDS["measurement"].file
+    with h5py.File(path, "a") as file:  # texts fill several heaps
+        for k in range(2000):
+            file.attrs[f"text {k}"] = "x" * 600
+    KINDS["measurement"].read(tmp_path)
     whole = path.read_bytes()
-    objects = whole.index(b"GCOL") + 16
-    path.write_bytes(whole[:objects] + bytes(16) + whole[objects + 16 :])
+    at = whole.rindex(b"GCOL")
+    assert at > 2**20
+    first = at + 16
+    length = int.from_bytes(whole[first + 8 : first + 16], "little")
+    place = first + object_ * (16 + (length + 7) // 8 * 8)
+    wrong = {"no size": bytes(16), "size beyond the heap": b"\1" + bytes(7) + b"\xf0" + b"\xff" * 7}
+    path.write_bytes(whole[:place] + wrong[damage] + whole[place + 16 :])
     with pytest.raises(ArgumentError, match="its global heap is damaged"):
         KINDS["measurement"].read(tmp_path)
 

@@ -5,9 +5,9 @@
 // (average.hpp).  A few further energies check the model; where it is off by more than the tolerance, M grows.
 #pragma once
 
+#include <compare>
 #include <map>
 #include <span>
-#include <tuple>
 
 #include "../conductance.hpp"
 #include "../poles/isolated.hpp"

@@ -165,3 +165,16 @@ def test_what_cannot_be_is_one_sentence(change, says):
     arguments = {"wire": WIRE, "mu": 0.0, "B": 0.0, "energy": 0.0} | change
     with pytest.raises(ArgumentError, match=says):
         local_density_of_states(**arguments)
+
+
+@pytest.mark.parametrize("temperature", [0.01, 0.3])
+def test_energies_far_apart_are_broadened_as_each_alone(temperature):
+    together = local_density_of_states(WIRE, 0.1, 0.5, [-0.3, 0.02, 0.021, 0.25], temperature)
+    for k, energy in enumerate(together["energy"].to_numpy()):
+        alone = local_density_of_states(WIRE, 0.1, 0.5, energy, temperature)
+        for name in BOTH:
+            one = alone[name].isel(energy=0).to_numpy()
+            largest = abs(together[name].to_numpy()).max()
+            np.testing.assert_allclose(
+                together[name].isel(energy=k).to_numpy(), one, atol=1e-6 * largest
+            )

@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 from scipy.stats import chi2
 
-from disorder_landscape import ArgumentError, conductance
+from disorder_landscape import ArgumentError
 from disorder_landscape.chain import FIVE, TEN, THIRTY, shipped_model
 from disorder_landscape.claims.claim import ResultMissingError
 from disorder_landscape.claims.derived import fixed_combinations, thirty_components, true_answers
@@ -21,18 +21,26 @@ from disorder_landscape.claims.study_tables import (
     unmodelled_table,
 )
 from disorder_landscape.config import DatasetConfig
+from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.executors.executor import Share
 from disorder_landscape.inference.invert import usable_network_features
+from disorder_landscape.inference.optimum import optimum_at
+from disorder_landscape.inference.outcome import Outcome
+from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.measurement import empty_measurement
-from disorder_landscape.inference.problem.prior import Prior
-from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED
 from disorder_landscape.model.parameters import Nanowire
-from disorder_landscape.model.quantities import CONDUCTANCES
-from disorder_landscape.studies import inversions, runner
+from disorder_landscape.studies import inversions, runner, unmodelled
 from disorder_landscape.studies.calibration import coverage, joint_coverage
-from disorder_landscape.studies.drawn_devices import named_prior
-from disorder_landscape.studies.fresh_wires import Task, measured_wire, model_of, wrong
+from disorder_landscape.studies.fresh_wires import (
+    SEED,
+    Inverted,
+    Task,
+    measured_wire,
+    model_of,
+    network_of,
+    wrong,
+)
 from disorder_landscape.studies.plan import load_study
 from disorder_landscape.studies.rows import as_text, read_rows, write_rows
 from disorder_landscape.studies.study import Place
@@ -41,9 +49,8 @@ from disorder_landscape.studies.unmodelled import (
     KINDS,
     MODEL_ALONE,
     NOTHING,
-    OTHER_BARRIERS,
     changed,
-    predicted_at,
+    unmodelled_row,
 )
 
 PLAN = """
@@ -55,6 +62,7 @@ noise = [0, 0.01]
 count = 3
 """
 NOISE = load_study("uniqueness").plan.noise
+HELD_BY_WIDE = ("gap", "temperature", "barrier", "bias")
 
 
 def row(index, model=FIVE, noise=0.01, **changes):
@@ -241,23 +249,47 @@ def test_the_table_of_what_the_model_lacks_counts_both_checks(tmp_path):
     assert gap.endswith("| 5 | 2 | 1e+02, 1e+02 | 4 | 2, 3 | 1 | 0, 0 |")
 
 
-@pytest.mark.parametrize("prior", [None, "wide"])
-def test_the_truth_predicts_what_is_measured_at_other_barriers(prior):
-    """Of a device whose own barriers and temperature may be unknown."""
-    config = DatasetConfig(realizations=1, components=5, mu_points=2, B_points=2)
-    settings = empty_measurement(config)
-    given = Prior.of_dataset(config) if prior is None else named_prior(prior)
-    unknowns = Unknowns(given.for_measurement(settings))
-    X = np.random.default_rng(0).normal(size=(2, len(unknowns.names)))
-    elsewhere = replace(settings, barrier=OTHER_BARRIERS)
-    found = predicted_at(elsewhere, unknowns, X)
-    for device, data in zip(unknowns.devices(X, settings), found, strict=True):
-        wire, setup = replace(device.wire, barrier=(25.0, 10.0)), device.setup
-        G = conductance(wire, setup.mu, settings.B, setup.bias, setup.temperature)
-        expected = np.stack([G[name].to_numpy() for name in CONDUCTANCES], axis=-1)
-        np.testing.assert_allclose(data, expected.ravel(), atol=1e-12)
-    if prior is None:
-        assert unknowns.devices(X, settings)[0].setup.temperature == settings.temperature
+@pytest.mark.parametrize(
+    ("prior", "kind"),
+    [(MODEL_ALONE, NOTHING), *(("wide", kind) for kind in (NOTHING, *HELD_BY_WIDE))],
+)
+def test_the_true_device_is_right_where_the_prior_holds_it(prior, kind, monkeypatch):
+    """It explains what is measured, and predicts that at other barriers; a wrong one does not."""
+    shown = {}
+    fresh = network_of(FIVE, 0.01).config.dataset.model_copy(update={"seed": SEED})
+
+    def inverted(observation, network, seed):
+        assert (network is None) == (prior == "wide")
+        unknowns, truth = observation.unknowns, realization(fresh, 0)
+        wire, settings = changed(kind, 0, truth.wire, observation.measurement)
+        x = unknowns.of_device(
+            truth.components,
+            wire.potential,
+            {
+                "alpha": wire.alpha,
+                "delta0": wire.delta0,
+                "temperature": settings.temperature,
+                "barrier_left": wire.barrier[0],
+                "barrier_right": wire.barrier[1],
+                "dissipation": 1e-9,
+                "bias_offset": settings.bias[0] - observation.measurement.bias[0],
+            },
+        )
+        x = x + shown["off"]
+        shown["misfit"] = (observation.simulate(x[None])[0] - observation.data).std()
+        found = Outcome([optimum_at(observation, Gaussian(x, 1e-10 * np.eye(x.size)))])
+        return Inverted(found, {"spread": 1e-5})
+
+    monkeypatch.setattr(unmodelled, "inverted", inverted)
+    task = unmodelled.Task(FIVE, prior, 0.01, kind, 0)
+    shown["off"] = 0.0
+    row = unmodelled_row(task, samples=60, every=4)
+    assert shown["misfit"] == pytest.approx(0.01, rel=0.05)
+    assert row["site_error"] < 1e-5
+    assert row["p_predictive"] > 0.02
+    assert (row["departure"] > 1) == (kind != NOTHING)
+    shown["off"] = 0.5
+    assert unmodelled_row(task, samples=60, every=4)["p_predictive"] <= 0.02
 
 
 @pytest.mark.parametrize("kind", list(KINDS))

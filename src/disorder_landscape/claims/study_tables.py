@@ -47,7 +47,6 @@ COMPONENTS_COLUMNS = (
     "wrong: flagged, unflagged",
     "seconds, one core",
 )
-PRIORS_OF_UNMODELLED = {MODEL_ALONE: "the model alone", "wide": "`wide.toml`"}
 UNMODELLED_COLUMNS = (
     "inverted with",
     "in truth",
@@ -130,7 +129,7 @@ def unmodelled_table(path: Path = UNMODELLED) -> str:
     """Return a Markdown table of what is noticed of wires that the model does not describe."""
     table = pd.read_csv(path)
     rows = []
-    for (prior, known), (kind, truth) in product(PRIORS_OF_UNMODELLED.items(), KINDS.items()):
+    for prior, (kind, truth) in product(table["prior"].unique(), KINDS.items()):
         some = table[(table["kind"] == kind) & (table["prior"] == prior)]
         if some.empty:
             continue
@@ -139,7 +138,7 @@ def unmodelled_table(path: Path = UNMODELLED) -> str:
         error = 1e3 * some["site_error"]
         rows.append(
             (
-                known,
+                "the model alone" if prior == MODEL_ALONE else f"`{prior}.toml`",
                 truth,
                 str(len(some)),
                 f"{some['departure'].median():.2g}",

@@ -16,7 +16,7 @@ import xarray as xr
 
 from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.config import DatasetConfig
-from disorder_landscape.dataset.hdf5 import open_hdf5
+from disorder_landscape.dataset.hdf5 import ATTRIBUTES, open_hdf5
 from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
 from disorder_landscape.executors.executor import WHOLE, Executor, Share
 from disorder_landscape.executors.local import IN_THIS_PROCESS
@@ -114,7 +114,7 @@ def _inspect(config: DatasetConfig, folder: Path, shard: int) -> tuple[bool, flo
     if not path.exists():
         return False, None
     try:
-        with open_hdf5(path) as file:
+        with open_hdf5(path, ATTRIBUTES) as file:
             made_with, held = file.attrs.get("config_hash"), len(file["realization"])
             error, first = file.attrs.get(LARGEST_ERROR), file.attrs.get("first_index")
     except (OSError, KeyError, RuntimeError, ValueError):

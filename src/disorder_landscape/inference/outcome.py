@@ -44,12 +44,15 @@ class Outcome:
     def more_probable(self, height: float) -> float:
         """Return how much of the posterior is more probable than this −2 log of its density.
 
-        It is uniform over [0, 1] where the density is that of the truth, whatever the posterior's
-        shape.
+        It is uniform over [0, 1] where the density is that of the truth: with samples whatever the
+        posterior's shape, and without where it is normal about the best optimum. NaN if the samples
+        are those of a wider distribution.
         """
-        drawn, best = self.importance_samples, self.best
-        if drawn is None or drawn.height is None:
-            return float(chi2.cdf(height - best.objective, best.answer.mean.size))
+        drawn = self.importance_samples
+        if drawn is None:
+            return float(chi2.cdf(height - self.best.objective, self.best.answer.mean.size))
+        if drawn.height is None or drawn.power < 1:
+            return float(np.nan)
         return float(drawn.weight[drawn.height < height].sum())
 
     def draw(self, rng: np.random.Generator, count: int) -> FloatArray:

@@ -23,10 +23,10 @@ from disorder_landscape.studies.drawn_devices import (
     Grid,
     drawn_device,
     measured_device,
-    named_prior,
     seed_of,
 )
 from disorder_landscape.studies.fresh_wires import Noise, inverted, more_probable
+from disorder_landscape.studies.named_priors import PriorName, named_prior
 from disorder_landscape.studies.rows import Row, rounded
 from disorder_landscape.studies.study import Derived, Place, Plan
 
@@ -50,7 +50,7 @@ class Devices(Grid):
     """So many devices of a prior, measured on a grid with each noise."""
 
     name: str
-    prior: str
+    prior: PriorName
     """Name of a file in configs/priors, without its ending."""
     noise: tuple[Annotated[Noise, Field(gt=0)], ...]
     """In e²/h."""

@@ -12,23 +12,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.config import Positive
 from disorder_landscape.inference.problem.measurement import Measurement
 from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
-from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.problem.unknowns import Device, Unknowns
 from disorder_landscape.model.disorder import mean_reduction, smooth_noise
 from disorder_landscape.model.parameters import B_MAX, BIAS, TEMPERATURE, FloatArray, Nanowire
 from disorder_landscape.studies.fresh_wires import SEED, exact_conductances
 from disorder_landscape.studies.study import Part
-
-PRIORS = REPOSITORY / "configs" / "priors"
-
-
-def named_prior(name: str) -> Prior:
-    """Return the prior of a file in configs/priors, which has this name without its ending."""
-    return Prior.from_toml(PRIORS / f"{name}.toml")
 
 
 class Grid(Part):

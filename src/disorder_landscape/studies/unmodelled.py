@@ -3,7 +3,8 @@
 Each row inverts a fresh wire of `studies.fresh_wires`, of which one thing is other than the model
 has it, and asks two checks: the verdict, and measurements at other barriers (K'_full of S-II.1),
 which the inversion has not seen. Rows of the kind "nothing" count false alarms. With a prior that
-leaves the thing open, the answer should be right.
+leaves the thing open, the answer should be right: `wide` does so with gap, temperature, barrier and
+bias, and nearly with the dissipation, which its parent shares.
 """
 
 from __future__ import annotations
@@ -29,7 +30,6 @@ from disorder_landscape.inference.problem.observation import (
 from disorder_landscape.inference.problem.unknowns import Unknowns, unknowns_of
 from disorder_landscape.inference.verification.predictive import predictive_p
 from disorder_landscape.model.parameters import FloatArray, Nanowire
-from disorder_landscape.studies.drawn_devices import named_prior
 from disorder_landscape.studies.fresh_wires import (
     SEED,
     Noise,
@@ -38,6 +38,7 @@ from disorder_landscape.studies.fresh_wires import (
     measured,
     network_of,
 )
+from disorder_landscape.studies.named_priors import PriorName, named_prior
 from disorder_landscape.studies.rows import rounded
 from disorder_landscape.studies.study import Part, Place, Plan
 
@@ -57,6 +58,8 @@ HOT, DISSIPATION, OFFSET = 0.1, 1e-3, 5e-3
 """In K, meV and meV."""
 MODEL_ALONE = "model"
 """Of a task: all but the disorder and α is taken as known."""
+STATED = Nanowire.barrier[0]
+"""Both barriers of the measurement that is inverted, in meV."""
 OTHER_BARRIERS = (25.0, 10.0)
 """Of the measurements that check the answer, left and right in meV."""
 
@@ -76,7 +79,7 @@ class Wires(Part):
     """So many wires of each model, with each thing other than the model has it."""
 
     models: tuple[ShippedModel, ...]
-    prior: str = MODEL_ALONE
+    prior: PriorName | None = None
     """Name of a file in configs/priors, without its ending, for an inversion without a network."""
     noise: tuple[Noise, ...]
     """In e²/h."""
@@ -100,7 +103,7 @@ class UnmodelledPlan(Plan):
     def tasks(self) -> Sequence[Task]:
         """Return the tasks, by model, prior, noise, kind and index."""
         return sorted(
-            Task(model, group.prior, noise, kind, index)
+            Task(model, group.prior or MODEL_ALONE, noise, kind, index)
             for group in self.wires
             for model in group.models
             for noise in group.noise
@@ -197,10 +200,15 @@ def unmodelled_row(task: Task, samples: int, every: int) -> dict[str, object]:
 
 
 def predicted_at(settings: Measurement, unknowns: Unknowns, X: FloatArray) -> FloatArray:
-    """Return data that samples X (sample, unknown) predict at the barriers of other settings."""
+    """Return data that samples X (sample, unknown) predict at the barriers of other settings.
+
+    Barriers that an inversion has found to be higher than stated are so there, by the same factor.
+    """
     predicted = []
     for device in unknowns.devices(X, settings):
-        wire, setup = replace(device.wire, barrier=settings.barrier), device.setup
+        found, (left, right), setup = device.wire.barrier, settings.barrier, device.setup
+        barrier = (left * found[0] / STATED, right * found[1] / STATED)
+        wire = replace(device.wire, barrier=barrier)
         as_set_up = replace(settings, mu=setup.mu, bias=setup.bias, temperature=setup.temperature)
         predicted.append(simulated(wire, as_set_up).ravel())
     return np.array(predicted)

@@ -23,7 +23,7 @@ TRUSTED = 3e-3
 used: some two in a hundred. (With all of them one answer of ten at 0.001 e²/h had error bars that
 were half of what they should be along one direction.)"""
 TRUSTED_NEAR_GAP = 3e-2
-"""The same where the thermal window reaches the gap: nearly all of the error is in ∂/∂Δ₀ there."""
+"""The same where the thermal window reaches the gap: the estimate is that of ∂/∂Δ₀ there."""
 POINTS_AT_ONCE = 4
 """Chemical potentials at which derivatives by all sites are in memory together."""
 FEW = 7
@@ -125,15 +125,14 @@ class Observation:
     def exact_slopes(self, x: FloatArray) -> Slopes | None:
         """Return the data and their derivatives at x (unknown,), in closed form.
 
-        None where the closed form does not reach: in tilted fields, at T = 0, where biases and
-        temperature reach the gap, and where the wire leaks without its parent.
+        None where the closed form does not reach: in tilted fields, at T = 0, where the largest
+        bias is less than 8 kT below the gap, and where the wire leaks without its parent.
         """
         device = self.unknowns.devices(x[None], self.measurement)[0]
         wire, at = device.wire, self._as_set_up(device)
         if not _closed_form_has_slopes(wire, at):
             return None
-        cold = gradients.has_closed_form(_at_largest_field(wire, at), at.bias, at.temperature)
-        trusted = TRUSTED if cold else TRUSTED_NEAR_GAP
+        trusted = _trusted(wire, at)
         G, slopes, doubtful = [], [], []
         for points in range(0, at.mu.size, POINTS_AT_ONCE):
             some = slice(points, points + POINTS_AT_ONCE)
@@ -188,6 +187,14 @@ def _closed_form_has_slopes(wire: Nanowire, at: Measurement) -> bool:
 def _at_largest_field(wire: Nanowire, at: Measurement) -> Nanowire:
     """Return the wire with its narrowest gap."""
     return wire.in_field(float(abs(at.B).max()))
+
+
+def _trusted(wire: Nanowire, at: Measurement) -> FloatArray:
+    """Return up to which estimated error derivatives are used, shape (B,)."""
+    far = [
+        gradients.has_closed_form(wire.in_field(float(B)), at.bias, at.temperature) for B in at.B
+    ]
+    return np.where(far, TRUSTED, TRUSTED_NEAR_GAP)
 
 
 def errors_variance(noise: ArrayLike) -> FloatArray:

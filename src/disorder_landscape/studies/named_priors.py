@@ -1,0 +1,27 @@
+"""The priors of configs/priors, which plans call by their names."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import AfterValidator
+
+from disorder_landscape.chain import REPOSITORY
+from disorder_landscape.inference.problem.prior import Prior
+
+PRIORS = REPOSITORY / "configs" / "priors"
+
+
+def named_prior(name: str) -> Prior:
+    """Return the prior of a file in configs/priors, which has this name without its ending."""
+    return Prior.from_toml(PRIORS / f"{name}.toml")
+
+
+def _there_is(name: str) -> str:
+    names = sorted(path.stem for path in PRIORS.glob("*.toml"))
+    if name not in names:
+        raise ValueError(f"it must be one of {', '.join(names)}")
+    return name
+
+
+PriorName = Annotated[str, AfterValidator(_there_is)]
