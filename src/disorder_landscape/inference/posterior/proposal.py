@@ -5,7 +5,8 @@ posterior is, and the effective sample size does not tell. The tails of a t dist
 that such regions are found, and have a large weight then (Cappé et al., Stat. Comput. 18, 447). (Of
 two wires of ten components with noise of 0.01 e²/h and a posterior that bends, Mahalanobis'
 distance squared of the truth was 34 and 28 with normal proposals, and is 12 and 26 like this; with
-several times the samples it is 6 and 18.)
+several times the samples it is 6 and 18. Of a posterior that bends this distance is not χ²: 8 and
+76 % of these posteriors are more probable than the truth.)
 """
 
 from __future__ import annotations
