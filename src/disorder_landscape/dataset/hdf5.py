@@ -41,11 +41,10 @@ def open_hdf5(path: str | Path, looked_at: int | None = None) -> h5py.File:
             Path(path).open("rb") as file,
             mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content,
         ):
-            at = content.find(SIGNATURE, 0, looked_at or len(content))
-            while at >= 0:
+            end, at = looked_at or len(content), -1
+            while (at := content.find(SIGNATURE, at + 1, end)) >= 0:
                 if not _ends(content, at):
                     raise OSError("its global heap is damaged")
-                at = content.find(SIGNATURE, at + 1, looked_at or len(content))
     return h5py.File(path)
 
 

@@ -19,12 +19,7 @@ from pydantic import Field
 from disorder_landscape.config import Positive
 from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.studies.calibration import coverage, joint_coverage
-from disorder_landscape.studies.drawn_devices import (
-    Grid,
-    drawn_device,
-    measured_device,
-    seed_of,
-)
+from disorder_landscape.studies.drawn_devices import Grid, drawn_device, measured_device, seed_of
 from disorder_landscape.studies.fresh_wires import Noise, inverted, more_probable
 from disorder_landscape.studies.named_priors import PriorName, named_prior
 from disorder_landscape.studies.rows import Row, rounded

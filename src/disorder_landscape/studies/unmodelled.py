@@ -22,11 +22,7 @@ from disorder_landscape.inference.problem.measurement import (
     empty_measurement,
     simulated,
 )
-from disorder_landscape.inference.problem.observation import (
-    Observation,
-    errors_variance,
-    noise_of_channels,
-)
+from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
 from disorder_landscape.inference.problem.unknowns import Unknowns, unknowns_of
 from disorder_landscape.inference.verification.predictive import predictive_p
 from disorder_landscape.model.parameters import FloatArray, Nanowire
@@ -179,10 +175,9 @@ def unmodelled_row(task: Task, samples: int, every: int) -> dict[str, object]:
         settings, mu=config.mu[::every], B=config.B[::every], barrier=OTHER_BARRIERS
     )
     other_G = true_conductances(task, replace(one.wire, barrier=OTHER_BARRIERS), elsewhere)
-    further = measured(elsewhere, other_G, task.noise, task.index, 3).G.ravel()
+    further = Observation(measured(elsewhere, other_G, task.noise, task.index, 3), unknowns, noise)
     rng = np.random.default_rng([SEED, task.index, 4])
     predicted = predicted_at(elsewhere, unknowns, found.found.draw(rng, samples))
-    variance = np.broadcast_to(errors_variance(noise), other_G.shape).ravel()
     return rounded(
         {
             "model": task.model,
@@ -193,7 +188,7 @@ def unmodelled_row(task: Task, samples: int, every: int) -> dict[str, object]:
             "departure": float(np.sqrt((change**2).mean()) / task.noise),
             "site_error": float(np.sqrt(((unknowns.potential(mean) - true.potential) ** 2).mean())),
             "alpha_error": abs(unknowns.parameter("alpha", mean) - one.alpha),
-            "p_predictive": predictive_p(predicted, further, variance, rng),
+            "p_predictive": predictive_p(predicted, further.data, further.variance, rng),
             **found.outcome,
         }
     )
@@ -206,9 +201,8 @@ def predicted_at(settings: Measurement, unknowns: Unknowns, X: FloatArray) -> Fl
     """
     predicted = []
     for device in unknowns.devices(X, settings):
-        found, (left, right), setup = device.wire.barrier, settings.barrier, device.setup
+        found, (left, right) = device.wire.barrier, settings.barrier
         barrier = (left * found[0] / STATED, right * found[1] / STATED)
         wire = replace(device.wire, barrier=barrier)
-        as_set_up = replace(settings, mu=setup.mu, bias=setup.bias, temperature=setup.temperature)
-        predicted.append(simulated(wire, as_set_up).ravel())
+        predicted.append(simulated(wire, device.as_set_up(settings)).ravel())
     return np.array(predicted)

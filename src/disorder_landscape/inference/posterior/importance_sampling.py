@@ -166,7 +166,6 @@ def importance_sampling(
     count = FIRST_BATCH
     drawn: list[tuple[Gaussian, int]] = []
     straight, height = np.empty((0, len(unknowns.names))), np.empty(0)
-    log_stretch = np.empty(0)
     mixture = [Part(straightened.of_gaussian(part.scale), part.share) for part in mixture]
     for number in range(ITERATIONS):
         rng = np.random.default_rng([*seed, number])
@@ -176,16 +175,14 @@ def importance_sampling(
         inside = np.zeros(0, dtype=bool)
         while not inside.any():  # of a few, all may be beyond the walls
             new = np.concatenate([proposal.draw(scale, rng, k) for scale, k in now])
-            log_new = straightened.log_stretch(new)
-            inside = np.isfinite(log_new)
+            inside = np.isfinite(straightened.log_stretch(new))
         name = f"importance_sampling.{'.'.join(map(str, seed))}.{number}"
         X = straightened.white_noise(new[inside])
         simulated = cache(name, partial(_simulated, observation, X))
         height_new = np.full(len(new), np.inf)
         height_new[inside] = simulated["height"]
         straight, height = np.concatenate([straight, new]), np.append(height, height_new)
-        log_stretch = np.append(log_stretch, log_new)
-        log_posterior = log_stretch - 0.5 * height
+        log_posterior = straightened.log_stretch(straight) - 0.5 * height
         counted = int(np.isfinite(log_posterior).sum())
         least = LEAST_SHARE * min(most, counted)
         log_proposal = log_mixture(drawn, straight, proposal.log_density)

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from disorder_landscape.arguments import number_in, reals, require
 from disorder_landscape.inference.problem.measurement import Measurement, simulated
-from disorder_landscape.inference.problem.unknowns import Device, Unknowns, share_settings
+from disorder_landscape.inference.problem.unknowns import Unknowns, share_settings
 from disorder_landscape.model.parameters import NOISE_FLOOR, FloatArray, Nanowire
 from disorder_landscape.model.quantities import CONDUCTANCES
 from disorder_landscape.solver import compiled, gradients
@@ -119,8 +119,8 @@ class Observation:
         devices = self.unknowns.devices(X, self.measurement)
         if share_settings(devices):
             wires = [device.wire for device in devices]
-            return simulated(wires, self._as_set_up(devices[0]))
-        return np.stack([simulated(one.wire, self._as_set_up(one)) for one in devices])
+            return simulated(wires, devices[0].as_set_up(self.measurement))
+        return np.stack([simulated(one.wire, one.as_set_up(self.measurement)) for one in devices])
 
     def exact_slopes(self, x: FloatArray) -> Slopes | None:
         """Return the data and their derivatives at x (unknown,), in closed form.
@@ -129,7 +129,7 @@ class Observation:
         bias is less than 8 kT below the gap, and where the wire leaks without its parent.
         """
         device = self.unknowns.devices(x[None], self.measurement)[0]
-        wire, at = device.wire, self._as_set_up(device)
+        wire, at = device.wire, device.as_set_up(self.measurement)
         if not _closed_form_has_slopes(wire, at):
             return None
         trusted = _trusted(wire, at)
@@ -161,13 +161,6 @@ class Observation:
         of_one = place[mu, B][measured[mu, B]]
         return self.at(np.array([mu]), np.array([B]), all_biases), of_one
 
-    def _as_set_up(self, device: Device) -> Measurement:
-        """Return the measurement at the settings that it has in truth."""
-        setup = device.setup
-        return replace(
-            self.measurement, mu=setup.mu, bias=setup.bias, temperature=setup.temperature
-        )
-
     def misfit(self, y: FloatArray) -> FloatArray:
         """Return root-mean-square misfits in e²/h, shape (channel,); NaN without data."""
         squares = (y - self.data) ** 2
@@ -181,12 +174,8 @@ def _closed_form_has_slopes(wire: Nanowire, at: Measurement) -> bool:
     """Return whether there are derivatives of a wire at these settings in closed form."""
     if at.theta != 0 or at.temperature == 0:
         return False
-    return gradients.has_slopes(_at_largest_field(wire, at), at.bias, at.temperature)
-
-
-def _at_largest_field(wire: Nanowire, at: Measurement) -> Nanowire:
-    """Return the wire with its narrowest gap."""
-    return wire.in_field(float(abs(at.B).max()))
+    narrowest = wire.in_field(float(abs(at.B).max()))
+    return gradients.has_slopes(narrowest, at.bias, at.temperature)
 
 
 def _trusted(wire: Nanowire, at: Measurement) -> FloatArray:

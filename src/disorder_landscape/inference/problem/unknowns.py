@@ -12,7 +12,7 @@ shifts μ by more than kT.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -41,6 +41,11 @@ class Device(NamedTuple):
 
     wire: Nanowire
     setup: Setup
+
+    def as_set_up(self, measurement: Measurement) -> Measurement:
+        """Return a measurement at the settings that it has in truth."""
+        setup = self.setup
+        return replace(measurement, mu=setup.mu, bias=setup.bias, temperature=setup.temperature)
 
 
 @dataclass(frozen=True, eq=False)
