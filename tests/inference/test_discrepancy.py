@@ -8,6 +8,7 @@ import disorder_landscape as dl
 from disorder_landscape import conductance
 from disorder_landscape.config import Config, DatasetConfig
 from disorder_landscape.dataset.realizations import realization
+from disorder_landscape.inference import discrepancy
 from disorder_landscape.inference.invert import InversionSettings
 from disorder_landscape.inference.report import sentences_on, summary
 from disorder_landscape.inference.search.regression_rounds import RoundSettings
@@ -81,6 +82,15 @@ def test_words_say_how_large_they_are(allowed):
     said = "Errors beside the noise are allowed for, in e²/h: G_LL 0.0"
     assert sentences_on(allowed)[1].startswith(said)
     assert any(line.startswith(said) for line in summary(allowed))
+
+
+def test_it_says_whether_they_have_settled(measured, allowed, monkeypatch):
+    assert allowed["discrepancy"].attrs["settled"] == 1
+    assert all("settled" not in sentence for sentence in sentences_on(allowed))
+    monkeypatch.setattr(discrepancy, "TURNS", 1)
+    cut_short = infer(measured, discrepancy=True)
+    assert cut_short["discrepancy"].attrs["settled"] == 0
+    assert "They have not settled" in sentences_on(cut_short)[1]
 
 
 def test_data_that_the_noise_explains_have_none(measured, known):

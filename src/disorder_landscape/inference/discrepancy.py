@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -37,6 +38,16 @@ KEPT = 4
 """So many optima are taken along, the most probable ones: with more noise another may be best."""
 
 
+class BestEffort(NamedTuple):
+    """What explains data best with errors of the channels beside the noise."""
+
+    observation: Observation
+    """Its noise includes the discrepancy."""
+    outcome: Outcome
+    is_settled: bool
+    """Whether further turns or samples are not expected to change anything."""
+
+
 def best_effort(
     observation: Observation,
     outcome: Outcome,
@@ -44,14 +55,14 @@ def best_effort(
     cache: Cache = uncached,
     step: Report = no_report,
     sampling: Report = no_report,
-) -> tuple[Observation, Outcome]:
-    """Return an observation whose errors include the discrepancy, and what explains it best.
+) -> BestEffort:
+    """Return what explains the data best if their errors include the discrepancy.
 
     Parameters
     ----------
     observation : Observation
     outcome : Outcome
-        What its inversion has come to. If that explains the data, both are returned as they are.
+        What its inversion has come to. If that explains the data, it is returned as it is.
     seed : sequence of int
         Of the samples.
     cache : callable, optional
@@ -60,18 +71,20 @@ def best_effort(
         Called before each step, and after each iteration of importance sampling.
     """
     if outcome.best.fits:
-        return observation, outcome
+        return BestEffort(observation, outcome, True)
     optima = sorted(outcome.optima, key=lambda one: one.objective)[:KEPT]
-    with_errors = observation
+    with_errors, is_settled = observation, False
     for turn in range(TURNS):
         before = with_errors.noise
         errors = errors_of(observation, best(optima))
         with_errors = replace(observation, noise=errors)
         optima = _optima(with_errors, optima, cache, f"discrepancy.{turn}", step)
-        if np.allclose(before, errors, rtol=SETTLED, atol=0.0):
+        is_settled = np.allclose(before, errors, rtol=SETTLED, atol=0.0)
+        if is_settled:
             break
     drawn = posterior_samples(with_errors, optima, seed, cache, sampling)
-    return with_errors, Outcome(optima, drawn, outcome.attempts, outcome.rounds)
+    found = Outcome(optima, drawn, outcome.attempts, outcome.rounds)
+    return BestEffort(with_errors, found, is_settled and found.is_posterior)
 
 
 def errors_of(observation: Observation, optimum: Optimum) -> FloatArray:
@@ -86,15 +99,19 @@ def errors_of(observation: Observation, optimum: Optimum) -> FloatArray:
     return np.asarray(np.maximum(misfit, observation.noise))
 
 
-def discrepancy_of(observation: Observation, with_errors: Observation) -> xr.DataArray:
+def discrepancy_of(observation: Observation, effort: BestEffort) -> xr.DataArray:
     """Return the standard deviation of the discrepancy alone in e²/h, dims (channel,).
 
-    NaN where nothing was measured.
+    NaN where nothing was measured. The attribute settled is 1 or 0.
     """
     measured = np.isfinite(observation.misfit(observation.data))
-    squares = with_errors.noise**2 - observation.noise**2
+    squares = effort.observation.noise**2 - observation.noise**2
     alone = np.where(measured, np.sqrt(squares), np.nan)
-    attrs = {"long_name": "error beside the noise", "units": "e²/h"}
+    attrs = {
+        "long_name": "error beside the noise",
+        "units": "e²/h",
+        "settled": int(effort.is_settled),
+    }
     return xr.DataArray(alone, dims="channel", attrs=attrs)
 
 

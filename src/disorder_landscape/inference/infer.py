@@ -19,7 +19,7 @@ from disorder_landscape.arguments import (
 )
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.inference.checkpoint import Checkpoint
-from disorder_landscape.inference.discrepancy import best_effort, discrepancy_of
+from disorder_landscape.inference.discrepancy import BestEffort, best_effort, discrepancy_of
 from disorder_landscape.inference.invert import (
     InversionSettings,
     invert,
@@ -122,8 +122,9 @@ def infer(
         standard deviations of the posterior itself, of all of these, with _mean and _std. misfit
         (channel) in e²/h, of the most probable wire, NaN where nothing was measured. Of the mean:
         conductances G_LL … G_RL (mu, B, bias) and, on a finer grid, T_IV (lead, map_mu, map_B).
-        With discrepancy, the standard deviation of that error, discrepancy (channel) in e²/h;
-        log_evidence then is that with these errors.
+        With discrepancy, the standard deviation of that error, discrepancy (channel) in e²/h, whose
+        attribute settled is 0 where more turns or samples may change it; log_evidence then is that
+        with these errors.
         P_topological (map_mu, map_B), the share of the samples with det r < 0. P_gap (gap, mu, B):
         the share whose lowest excitation, above zero modes where det r < 0, is above each energy
         gap in meV. Attributes: verdict ("converged", "not converged" or "not described by the
@@ -153,18 +154,19 @@ def infer(
     fingerprint = _fingerprint(observation, trained, repr((seed, settings, start)))
     found_before = Checkpoint(checkpoint, fingerprint)
     found = invert(observation, trained, seed, settings, progress, found_before)
-    said, with_errors = verdict(observation, found), observation
+    said, effort = verdict(observation, found), BestEffort(observation, found, True)
     if discrepancy:
         last = found.attempts - 1
         reports = (within(progress, last, stage) for stage in (GAUSS_NEWTON, IMPORTANCE_SAMPLING))
         seeds = [seed, 2**31 + 4]
-        with_errors, found = best_effort(observation, found, seeds, found_before.cached, *reports)
+        effort = best_effort(observation, found, seeds, found_before.cached, *reports)
+        found = effort.outcome
     spread = observation.unknowns.site_std(found.answer.covariance)
     misfit = overall_misfit(observation, found.best.data)
     progress(Step(found.attempts - 1, MAPS, 0, misfit, spread))
-    result = result_of(with_errors, found, samples, seed)
+    result = result_of(effort.observation, found, samples, seed)
     if discrepancy:
-        result["discrepancy"] = discrepancy_of(observation, with_errors)
+        result["discrepancy"] = discrepancy_of(observation, effort)
     result.attrs |= {
         "verdict": said,
         "excess": chi_square_excess(observation, found.best.data),

@@ -24,6 +24,7 @@ OTHERWISE = 1.25
 SURE = 0.95
 """What at least this share of the samples has is taken for sure."""
 
+MAY_CHANGE = "more steps or samples may change them, and the answer"
 NOT_TO_BE_TRUSTED = "so neither error bars nor P(topological) are to be trusted"
 
 
@@ -150,7 +151,8 @@ def discrepancy_sentence(result: xr.Dataset) -> str:
     each = [f"{name} {value:.2g}" for name, value in left.to_series().items() if value > 0]
     if not each:
         return ""
-    return f"Errors beside the noise are allowed for, in e²/h: {', '.join(each)}."
+    are = f"Errors beside the noise are allowed for, in e²/h: {', '.join(each)}."
+    return are if left.attrs.get("settled", 1) else f"{are} They have not settled: {MAY_CHANGE}."
 
 
 def not_fixed_lines(result: xr.Dataset) -> list[str]:
