@@ -23,7 +23,7 @@ from disorder_landscape.studies.drawn_devices import Grid, drawn_device, measure
 from disorder_landscape.studies.fresh_wires import Noise, inverted, more_probable
 from disorder_landscape.studies.named_priors import PriorName, named_prior
 from disorder_landscape.studies.rows import Row, rounded
-from disorder_landscape.studies.study import Derived, Place, Plan
+from disorder_landscape.studies.study import Derived, Place, Plan, by_name
 
 NUMBERS = (
     *("noise", "site_error", "spread", "shape_error", "shape_spread", "more_probable"),
@@ -76,8 +76,7 @@ class DevicesPlan(Plan):
 
     def rows(self, task: Task, place: Place) -> list[dict[str, object]]:
         """Draw a device, measure it, invert the measurement."""
-        (group,) = (group for group in self.devices if group.name == task.name)
-        return [device_row(task, group)]
+        return [device_row(task, by_name(self.devices, task.name))]
 
     def derived(self, rows: Sequence[Row], place: Place) -> Derived:
         """Return coverage and errors, and how much of each parameter's uncertainty is left."""
@@ -85,8 +84,8 @@ class DevicesPlan(Plan):
         table = table.assign(**{name: pd.to_numeric(table[name]) for name in NUMBERS})
         numbers = {}
         for (name, noise), some in table.groupby(["name", "noise"]):
-            (group,) = (group for group in self.devices if group.name == name)
-            numbers[f"{name}, {noise:g}"] = summary(some, group.unknowns)
+            unknowns = by_name(self.devices, name).unknowns
+            numbers[f"{name}, {noise:g}"] = summary(some, unknowns)
         return Derived(numbers)
 
 

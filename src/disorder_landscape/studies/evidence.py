@@ -23,7 +23,7 @@ from disorder_landscape.inference.result import evidence
 from disorder_landscape.studies.drawn_devices import Grid, drawn_device, measured_device, seed_of
 from disorder_landscape.studies.fresh_wires import Noise, inverted
 from disorder_landscape.studies.rows import Row, numbers, rounded
-from disorder_landscape.studies.study import Derived, Place, Plan
+from disorder_landscape.studies.study import Derived, Place, Plan, by_name
 
 DECISIVE = 5.0
 """A difference of log evidence by which one prior is 150 times as probable as the other (Kass and
@@ -74,8 +74,7 @@ class EvidencePlan(Plan):
 
     def rows(self, task: Task, place: Place) -> list[dict[str, object]]:
         """Draw a device, measure it, and invert the measurement with each prior."""
-        (group,) = (group for group in self.groups if group.name == task.group)
-        return rows_of(task, group)
+        return rows_of(task, by_name(self.groups, task.group))
 
     def derived(self, rows: Sequence[Row], place: Place) -> Derived:
         """Return how often, and by how much, the prior of the device has the larger evidence."""

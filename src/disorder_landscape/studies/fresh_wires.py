@@ -9,7 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import Annotated, ClassVar
 
@@ -34,7 +34,7 @@ from disorder_landscape.inference.verdict import verdict
 from disorder_landscape.learning.model import TrainedModel, load_model
 from disorder_landscape.model.parameters import FloatArray, Nanowire
 from disorder_landscape.solver.quadrature import thermal_quadrature
-from disorder_landscape.studies.study import Part, Plan
+from disorder_landscape.studies.study import Part, Plan, one_of
 
 SEED = 2026
 """Of the fresh wires; the datasets' is 0."""
@@ -43,13 +43,7 @@ WRONG = 0.005, 4.0
 standard deviations, root mean square over the sites."""
 
 
-def _shipped(model: str) -> str:
-    if model not in MODELS:
-        raise ValueError(f"it must be one of {', '.join(MODELS)}")
-    return model
-
-
-ShippedModel = Annotated[str, AfterValidator(_shipped)]
+ShippedModel = Annotated[str, AfterValidator(partial(one_of, MODELS))]
 Noise = Annotated[float, Field(ge=0, le=1)]
 
 

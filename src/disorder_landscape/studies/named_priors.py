@@ -8,6 +8,7 @@ from pydantic import AfterValidator
 
 from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.inference.problem.prior import Prior
+from disorder_landscape.studies.study import one_of
 
 PRIORS = REPOSITORY / "configs" / "priors"
 
@@ -18,10 +19,7 @@ def named_prior(name: str) -> Prior:
 
 
 def _there_is(name: str) -> str:
-    names = sorted(path.stem for path in PRIORS.glob("*.toml"))
-    if name not in names:
-        raise ValueError(f"it must be one of {', '.join(names)}")
-    return name
+    return one_of(sorted(path.stem for path in PRIORS.glob("*.toml")), name)
 
 
 PriorName = Annotated[str, AfterValidator(_there_is)]

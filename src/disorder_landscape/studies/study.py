@@ -6,7 +6,7 @@ from abc import abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Protocol, TypeVar
 
 from pydantic import BaseModel, ConfigDict
 
@@ -48,6 +48,28 @@ class Part(BaseModel):
     """A table of a plan, with nothing in it that is not known."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Named(Protocol):
+    """A table of a plan that tasks call by its name."""
+
+    name: str
+
+
+Group = TypeVar("Group", bound=Named)
+
+
+def by_name(groups: Iterable[Group], name: str) -> Group:
+    """Return the one that has this name."""
+    (group,) = (group for group in groups if group.name == name)
+    return group
+
+
+def one_of(names: Iterable[str], name: str) -> str:
+    """Return a name that a plan has, for pydantic, which makes a sentence of the error."""
+    if name not in names:
+        raise ValueError(f"it must be one of {', '.join(names)}")
+    return name
 
 
 class Plan(Part):
