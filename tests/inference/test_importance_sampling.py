@@ -9,7 +9,7 @@ from scipy.stats import kstest
 from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.optimum import Optimum, optimum_at
 from disorder_landscape.inference.outcome import Outcome
-from disorder_landscape.inference.posterior import proposal
+from disorder_landscape.inference.posterior import proposal, samples
 from disorder_landscape.inference.posterior.importance_sampling import (
     ENOUGH,
     FIRST_BATCH,
@@ -264,6 +264,19 @@ def test_answers_wider_than_conductances_are_linear_get_importance_samples(lines
         assert verdict(lines, Outcome(optima, tempered_only)) == NOT_CONVERGED
     poor = replace(one, excess=9.0)
     assert posterior_samples(lines, [poor], [0]) is None  # what does not fit stays as it is
+
+
+def test_narrow_answers_get_importance_samples_if_much_of_a_device_is_unknown(lines, monkeypatch):
+    answer = posterior(lines)
+    bar = UNKNOWNS.site_std(answer.covariance)
+    lines = replace(lines, measurement=Measured(temperature=10 * bar / BOLTZMANN))
+    narrow = Gaussian(answer.mean, answer.covariance / 25)
+    one = optimum_at(lines, narrow)
+    assert len(UNKNOWNS.parameters) == 1
+    assert posterior_samples(lines, [one], [0]) is None
+    monkeypatch.setattr(samples, "NARROW_PARAMETERS", 0)
+    found = posterior_samples(lines, [one], [0])
+    assert UNKNOWNS.site_std(found.moments.covariance) == pytest.approx(bar, rel=0.15)
 
 
 def test_several_optima_get_importance_samples(lines):
