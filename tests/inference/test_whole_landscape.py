@@ -13,10 +13,12 @@ from disorder_landscape.inference.problem.observation import Observation, noise_
 from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.search.whole_landscape import (
-    HIGHEST,
+    DRAWN_ANEW,
+    REDRAWN,
     STARTS,
     WAYS_DOWN,
     optima_of_whole_landscape,
+    with_new_stretch,
 )
 from disorder_landscape.inference.verdict import CONVERGED, is_surely_right, verdict
 from disorder_landscape.model.disorder import smooth_noise
@@ -25,6 +27,7 @@ from linear_data import DATA, Linear, posterior
 
 SITES, AMPLITUDE, NOISE = 30, 0.8, 0.002
 MU, B, BIAS = np.linspace(0, 4.2, 12), np.linspace(0, 0.8, 3), np.linspace(-0.08, 0.08, 5)
+PARTS = 3
 NOTHING = Measurement(np.zeros((12, 3, 5, 4)), MU, B, BIAS, 0.0, (15.0, 15.0), 0.05)
 UNKNOWNS = Unknowns(
     Prior(components=None, sites=SITES, amplitude=AMPLITUDE).for_measurement(NOTHING)
@@ -51,23 +54,59 @@ def test_parts_hold_the_highest_mu_that_are_measured():
     G = np.zeros_like(NOTHING.G)
     G[[1, 10]] = np.nan
     reversed_axis = replace(NOTHING, G=G, mu=MU[::-1])
-    parts = Observation(reversed_axis, UNKNOWNS, np.ones(4)).on_highest_lines((0.1, 0.11, 0.3, 1))
-    assert [part.measurement.mu.size for part in parts] == [1, 3, 10]
-    assert parts[0].measurement.mu == MU[-1]
-    np.testing.assert_array_equal(parts[1].measurement.mu, MU[[11, 9, 8]])
+    parts = Observation(reversed_axis, UNKNOWNS, np.ones(4)).on_highest_lines(3)
+    assert [part.measurement.mu.size for part in parts] == list(range(3, 11))
+    np.testing.assert_array_equal(parts[0].measurement.mu, MU[[11, 9, 8]])
+
+
+def test_few_points_are_spread_over_what_is_measured():
+    G = np.zeros_like(NOTHING.G)
+    G[[0, 1]] = np.nan
+    G[:, :, 2] = np.nan
+    few = Observation(replace(NOTHING, G=G), UNKNOWNS, np.ones(4)).on_few_points(4, 9, 3)
+    np.testing.assert_array_equal(few.measurement.mu, MU[[2, 5, 8, 11]])
+    np.testing.assert_array_equal(few.measurement.B, B)
+    np.testing.assert_array_equal(few.measurement.bias, BIAS[[0, 3, 4]])
+    assert few.data.size == few.measurement.G.size
+
+
+def test_a_new_stretch_of_v_is_as_probable_as_the_old_one():
+    """The mean square of the unknowns stays one each; elsewhere V stays."""
+    rng = np.random.default_rng(0)
+    many = UNKNOWNS.prior.draw(rng, 2000)
+    answers = (Gaussian(x, UNKNOWNS.prior.covariance) for x in many)
+    changed = np.array([with_new_stretch(UNKNOWNS, answer, rng) for answer in answers])
+    before, after = UNKNOWNS.potential(many), UNKNOWNS.potential(changed)
+    assert after.std() == pytest.approx(before.std(), rel=0.03)
+    off = (after - before).std(axis=0) / before.std(axis=0)
+    assert np.all(off < np.sqrt(2) * max(DRAWN_ANEW))
+    assert np.all(off > np.sqrt(2) * min(DRAWN_ANEW) / 2)
+
+
+def test_a_new_stretch_leaves_the_rest():
+    long = Unknowns(Prior(components=None, sites=300).for_measurement(NOTHING))
+    rng = np.random.default_rng(3)
+    x = long.prior.draw(rng, 2)[0]
+    answer = Gaussian(x, long.prior.covariance)
+    off = long.potential(with_new_stretch(long, answer, rng)) - long.potential(x)
+    assert abs(off).max() > 0.05
+    assert np.sum(abs(off) < 0.01) > 60
 
 
 @pytest.fixture
 def whole():
     slope = np.random.default_rng(0).normal(size=(len(UNKNOWNS.names), DATA))
-    return Whole(np.zeros(DATA), slope, unknowns=UNKNOWNS)
+    return Whole(np.zeros(DATA), slope, unknowns=UNKNOWNS, measurement=NOTHING)
 
 
 class Whole(Linear):
     """Linear data of a whole landscape, all of them in each part."""
 
-    def on_highest_lines(self, shares):
-        return [replace(self) for _ in shares]
+    def on_few_points(self, *counts):
+        return replace(self)
+
+    def on_highest_lines(self, first):
+        return [replace(self) for _ in range(PARTS)]
 
 
 def test_steps_use_more_and_more_data_until_starts_agree(whole):
@@ -78,30 +117,63 @@ def test_steps_use_more_and_more_data_until_starts_agree(whole):
         return exact
 
     optima, ways = optima_of_whole_landscape(whole, steps, 0)
-    down, again = [(0, "fit")] * len(HIGHEST), [(0, "fit"), (0, "place")]
+    down, again = [(0, "better")] * (PARTS + 2), [(0, "fit"), (0, "place")]
     assert asked == [*down, (0, "place"), *again, *again, (0, "optimum")]
     assert ways == 1
     assert optima.is_settled
     assert optima.found[0].found_by == (0, 0, 0)
 
 
+def test_a_stretch_is_drawn_anew_until_the_noise_explains_a_part(whole):
+    exact, asked = posterior(whole), []
+    far = Gaussian(30 + exact.mean, 1e-4 * np.eye(exact.mean.size))
+
+    def steps(of, x, attempt, name, known, goal):
+        asked.append((name, len(known)))
+        return far if len(asked) <= 4 else exact
+
+    optima, ways = optima_of_whole_landscape(whole, steps, 0)
+    redrawn = [(f"0.part.0.{k}", 1) for k in range(4)]
+    assert asked[:7] == [("0.part.0", 0), *redrawn, ("0.part.1", 0), ("0.part.2", 0)]
+    assert ways == 1
+    assert optima.is_settled
+
+
 def test_other_ways_down_are_tried_from_draws_of_the_prior(whole):
-    begun, ends = [], []
+    """Where no new stretch helps, a way ends with all data."""
+    begun, ends, redrawn = [], [], []
     far = Gaussian(30 + posterior(whole).mean, 1e-4 * np.eye(len(UNKNOWNS.names)))
 
     def steps(of, x, attempt, name, known, goal):
-        if name.endswith(".0.highest.0"):
+        if name.endswith(".part.0"):
             begun.append(x)
-        if goal == "place":
+        elif "part" in name:
+            redrawn.append(attempt)
+        else:
             ends.append(attempt)
         return far
 
     optima, ways = optima_of_whole_landscape(whole, steps, 0)
     assert ways == WAYS_DOWN == len(begun)
-    assert len(ends) == STARTS[False] * WAYS_DOWN
+    assert ends == list(range(WAYS_DOWN))
+    assert len(redrawn) == REDRAWN * WAYS_DOWN
     assert not begun[0].any()
     assert abs(begun[1] - begun[2]).max() > 1
     assert not optima.fits
+
+
+def test_starts_that_do_not_agree_end(whole):
+    exact = posterior(whole)
+    far = Gaussian(30 + exact.mean, 1e-4 * np.eye(exact.mean.size))
+
+    def steps(of, x, attempt, name, known, goal):
+        return exact if "part" in name or name in ("0.0", "best") else far
+
+    optima, ways = optima_of_whole_landscape(whole, steps, 0)
+    assert ways == WAYS_DOWN
+    assert optima.starts == STARTS * WAYS_DOWN
+    assert optima.fits
+    assert not optima.is_settled
 
 
 def test_no_answer_of_a_whole_landscape_is_surely_right(whole):

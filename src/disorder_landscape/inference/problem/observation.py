@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -94,16 +94,29 @@ class Observation:
         part = self.at(mu, B, np.arange(m.bias.size))
         return part if part.data.size >= share * self.data.size / 2 else self
 
-    def on_highest_lines(self, shares: Sequence[float]) -> list[Observation]:
-        """Return observations of these shares of the measured lines of μ, the highest ones.
+    def on_few_points(self, *counts: int) -> Observation:
+        """Return an observation of so many points of μ, B and bias at most, evenly spread.
 
-        Those that are the same are left out, and empty ones.
+        Points at which nothing was measured do not count.
+        """
+        axes = []
+        for axis, count in enumerate(counts):
+            others = tuple({0, 1, 2, 3} - {axis})
+            measured = np.flatnonzero(self.is_measured.any(axis=others))
+            few = np.linspace(0, measured.size - 1, min(count, measured.size))
+            axes.append(measured[few.round().astype(int)])
+        return self.at(*axes)
+
+    def on_highest_lines(self, first: int) -> list[Observation]:
+        """Return observations of the lines of so many μ, the highest ones, of one more, … of all.
+
+        Lines of which nothing was measured do not count.
         """
         m = self.measurement
         measured = np.flatnonzero(self.is_measured.any(axis=(1, 2, 3)))
         upwards = measured[np.argsort(m.mu[measured])]
-        counts = sorted({max(1, round(share * upwards.size)) for share in shares})
         B, bias = np.arange(m.B.size), np.arange(m.bias.size)
+        counts = range(min(first, upwards.size), upwards.size + 1)
         return [self.at(np.sort(upwards[-count:]), B, bias) for count in counts]
 
     def at(

@@ -270,11 +270,16 @@ class Unknowns:
         if not self.is_whole_landscape:
             named = {f"c_{n}": c for n, c in enumerate(components, start=1)}
             return self.vector({**named, "mean": float(potential.mean()), **unknown})
-        x = np.zeros(len(self.names))
-        x[: self.of_disorder] = np.linalg.lstsq(self.to_potential, potential, rcond=None)[0]
+        x = self.with_potential(np.zeros(len(self.names)), potential)
         for name, value in unknown.items():
             x[self.names.index(name)] = self.parameters[name].standard(value)
         return x
+
+    def with_potential(self, x: FloatArray, potential: FloatArray) -> FloatArray:
+        """Return unknowns with those of the potential that is nearest to one, shape (unknown,)."""
+        changed = x.copy()
+        changed[: self.of_disorder] = np.linalg.lstsq(self.to_potential, potential, rcond=None)[0]
+        return changed
 
 
 def unknowns_of(config: DatasetConfig) -> Unknowns:

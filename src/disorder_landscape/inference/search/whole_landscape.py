@@ -2,55 +2,112 @@
 
 No guess is near enough for Gauss–Newton steps with all data. But the higher μ is, the less V
 scatters the electrons back, and the wider the minima of −2 log of the posterior density are. So
-steps take the lines of the highest μ first, and add lower ones as they go on. The lower lines then
-see a potential that is nearly right where it matters to them.
+steps take the lines of the highest μ first, and add one lower line after the other. Of each line
+they take few data, since few data have fewer minima than many.
 
-They end near the best optimum, but often in another one some 10 µeV away, which fits all but as
-well. From starts about that one, as far off again, steps reach the best one.
+Where the noise does not explain a part of the data, V is wrong somewhere, and right or harmless
+elsewhere: a stretch of it is drawn anew, and steps start again from there (basin hopping: Wales and
+Doye, J. Phys. Chem. A 101, 5111 (1997)). At one end or the other V is right first, and from there
+on it becomes so inwards, since electrons of low μ do not reach further.
+
+Steps end near the best optimum, but often in another one some 10 µeV away, which fits all but as
+well. From starts about that one, as far off again, they reach the best one.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from disorder_landscape.inference.optimum import Optimum, best
+from disorder_landscape.inference.optimum import Optimum, best, optimum_at
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.observation import Observation
+from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.search.optima import Optima, Steps
+from disorder_landscape.model.parameters import FloatArray
 
-HIGHEST = 1 / 12, 1 / 5, 3 / 8, 3 / 5, 5 / 6
-"""Of the lines of μ, from the highest down, that steps use one after the other before they use
-all."""
+FEW = 24, 5, 7
+"""Points of μ, B and bias on the way down, …"""
+MORE = 48, 5, 11
+"""… and of the data that follow before all."""
+HIGHEST = 4
+"""The way down begins with so many lines of μ."""
 WAYS_DOWN = 3
 """At most. The first is from the middle of the prior, the others from draws."""
-STARTS = 4, 8
-"""On each way so many starts, its own end the first, if none leads to an optimum that fits, or if
-one does. The others are near the best optimum of the way, and use the last of these parts of the
-data before all. …"""
+REDRAWN = 40
+"""A way ends where so many new stretches of V have not led to an optimum that fits."""
+STRETCH = 8.0, 35.0
+"""Standard deviation of the Gaussian window in which V is drawn anew, in sites: the least and the
+largest."""
+DRAWN_ANEW = 0.3, 0.6, 1.0
+"""Share of the new V in the middle of the window, root mean square; what was there has the rest."""
+STARTS = 8
+"""With all data on each way down that leads to an optimum that fits, its own end the first."""
 NEAR_BEST = 0.2
-"""… Near is this part of the prior's width. (From 0.1 and 0.2, and from 4 and 8 error bars away,
-five of five such starts left an optimum that was 13 µeV off for one that was 3 µeV off.)"""
+"""They are so near the best optimum, as a part of the prior's width. (From 0.1 and 0.2, and from 4
+and 8 error bars away, five of five such starts left an optimum that was 13 µeV off for one that was
+3 µeV off.)"""
 
 
 def optima_of_whole_landscape(
     observation: Observation, steps: Steps, seed: int
 ) -> tuple[Optima, int]:
     """Return the optima to which steps over lower and lower μ lead, and how many ways down."""
-    parts = observation.on_highest_lines(HIGHEST)
-    optima = Optima(observation, parts[-1], steps)
+    optima = Optima(observation, observation.on_few_points(*MORE), steps)
+    few = observation.on_few_points(*FEW).on_highest_lines(HIGHEST)
     prior, rng = observation.unknowns.prior, np.random.default_rng([seed, 2**31 + 3])
-    few, more = STARTS
     for way in range(WAYS_DOWN):
         x = prior.mean if way == 0 else prior.draw(rng, 2)[0]
-        of_way: list[Optimum] = []
-        while not optima.is_done and len(of_way) < (more if optima.fits else few):
-            for k, part in enumerate([optima.some] if of_way else parts):
-                x = steps(part, x, way, f"{way}.{len(of_way)}.highest.{k}", (), "fit").mean
-            of_way.append(optima.end_at(x, way, "place"))
+        end = _way_down([*few, optima.some, observation], x, steps, way, rng)
+        of_way = [optima.end_at(end.answer.mean, way, "place")]
+        while optima.fits and not optima.is_done and len(of_way) < STARTS:
             near = Gaussian(best(of_way).answer.mean, NEAR_BEST**2 * prior.covariance)
             x = near.draw(rng, 2)[0]
+            x = steps(optima.some, x, way, f"{way}.{len(of_way)}.some", (), "fit").mean
+            of_way.append(optima.end_at(x, way, "place"))
         if optima.is_done:
             break
     if optima.fits:
         optima.refine(way)
     return optima, way + 1
+
+
+def _way_down(
+    parts: Sequence[Observation], x: FloatArray, steps: Steps, way: int, rng: np.random.Generator
+) -> Optimum:
+    """Return where steps with one part of the data after the other end.
+
+    That is an optimum of the last part if it fits, or of the first one that none is found to fit.
+    """
+    for number, part in enumerate(parts):
+        name = f"{way}.part.{number}"
+        end = optimum_at(part, steps(part, x, way, name, (), "better"))
+        for count in range(REDRAWN):
+            if end.fits:
+                break
+            x = with_new_stretch(part.unknowns, end.answer, rng)
+            tried = optimum_at(part, steps(part, x, way, f"{name}.{count}", [end], "better"))
+            end = best([end, tried])
+        x = end.answer.mean
+        if not end.fits:
+            break
+    return end
+
+
+def with_new_stretch(unknowns: Unknowns, answer: Gaussian, rng: np.random.Generator) -> FloatArray:
+    """Return unknowns (unknown,) of which V is drawn anew about one site.
+
+    It is there the more often, the larger the error bar is. Both the old V and the new one are as
+    probable as the disorder model has it.
+    """
+    x, std = answer.mean, unknowns.potential_std(answer.covariance)
+    old, drawn = unknowns.potential(x), unknowns.potential(unknowns.prior.draw(rng, 2)[0])
+    site, width, new = (
+        rng.choice(old.size, p=std / std.sum()),
+        rng.uniform(*STRETCH),
+        rng.choice(DRAWN_ANEW),
+    )
+    window = np.exp(-(((np.arange(old.size) - site) / width) ** 2) / 2)
+    share = new * window
+    return unknowns.with_potential(x, np.sqrt(1 - share**2) * old + share * drawn)
