@@ -129,12 +129,11 @@ def test_a_stretch_is_drawn_anew_until_the_noise_explains_a_part(whole):
     far = Gaussian(30 + exact.mean, 1e-4 * np.eye(exact.mean.size))
 
     def steps(of, x, attempt, name, known, goal):
-        asked.append((name, len(known)))
+        asked.append((goal, len(known)))
         return far if len(asked) <= 4 else exact
 
     optima, ways = optima_of_whole_landscape(whole, steps, 0)
-    redrawn = [(f"0.part.0.{k}", 1) for k in range(4)]
-    assert asked[:7] == [("0.part.0", 0), *redrawn, ("0.part.1", 0), ("0.part.2", 0)]
+    assert asked[:7] == [("better", 0), *[("better", 1)] * 4, ("better", 0), ("better", 0)]
     assert ways == 1
     assert optima.is_settled
 
@@ -145,12 +144,12 @@ def test_other_ways_down_are_tried_from_draws_of_the_prior(whole):
     far = Gaussian(30 + posterior(whole).mean, 1e-4 * np.eye(len(UNKNOWNS.names)))
 
     def steps(of, x, attempt, name, known, goal):
-        if name.endswith(".part.0"):
-            begun.append(x)
-        elif "part" in name:
+        if goal != "better":
+            ends.append(attempt)
+        elif known:
             redrawn.append(attempt)
         else:
-            ends.append(attempt)
+            begun.append(x)
         return far
 
     optima, ways = optima_of_whole_landscape(whole, steps, 0)
@@ -162,16 +161,44 @@ def test_other_ways_down_are_tried_from_draws_of_the_prior(whole):
     assert not optima.fits
 
 
+def test_an_interrupted_search_goes_on_with_the_next_part(whole):
+    """Each part has stretches of its own."""
+    exact = posterior(whole)
+    kept, begun = {}, []
+
+    def cache(name, calculate):
+        if name not in kept:
+            kept[name] = calculate()
+        return kept[name]
+
+    def steps(of, x, attempt, name, known, goal):
+        begun.append(x)
+        if len(begun) == interrupted:
+            raise KeyboardInterrupt
+        far = Gaussian(x + 30, exact.covariance)
+        return exact if goal != "better" or len(known) > 0 else far
+
+    interrupted = 2 * PARTS + 2
+    with pytest.raises(KeyboardInterrupt):
+        optima_of_whole_landscape(whole, steps, 0, cache)
+    first, interrupted = begun[:], 0
+    begun.clear()
+    optima_of_whole_landscape(whole, steps, 0, cache)
+    np.testing.assert_array_equal(begun[0], first[-2])
+    np.testing.assert_array_equal(begun[1], first[-1])
+    assert len(kept) == PARTS + 2
+
+
 def test_starts_that_do_not_agree_end(whole):
     exact = posterior(whole)
     far = Gaussian(30 + exact.mean, 1e-4 * np.eye(exact.mean.size))
 
     def steps(of, x, attempt, name, known, goal):
-        return exact if "part" in name or name in ("0.0", "best") else far
+        return exact if name in (None, "0.0", "best") else far
 
     optima, ways = optima_of_whole_landscape(whole, steps, 0)
-    assert ways == WAYS_DOWN
-    assert optima.starts == STARTS * WAYS_DOWN
+    assert ways == 1
+    assert optima.starts == STARTS
     assert optima.fits
     assert not optima.is_settled
 

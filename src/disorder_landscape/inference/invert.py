@@ -93,7 +93,7 @@ def invert(
     steps = partial(_steps, cache, progress)
     rounds = 0
     if observation.unknowns.is_whole_landscape:
-        optima, attempts = optima_of_whole_landscape(observation, steps, seed)
+        optima, attempts = optima_of_whole_landscape(observation, steps, seed, cache)
     else:
         found = _optima_of_few_unknowns(observation, model, steps, seed, settings, progress, cache)
         optima, attempts, rounds = found
@@ -137,13 +137,15 @@ def _steps(
     observation: Observation,
     x: FloatArray,
     attempt: int,
-    name: str,
+    name: str | None,
     known: Sequence[Optimum],
     goal: Goal,
 ) -> Gaussian:
     """Return where Gauss–Newton steps from x (unknown,) end."""
     report = within(progress, attempt, GAUSS_NEWTON)
     make = partial(gauss_newton, observation, x, report, known, goal)
+    if name is None:
+        return make()
     return cached_gaussian(cache, f"gauss_newton.{name}", make)
 
 

@@ -35,9 +35,9 @@ this many kT. …"""
 STARTS_WHEN_WIDE = 8, 16
 """… Then there are at least, and at most, so many starts."""
 
-Steps = Callable[[Observation, FloatArray, int, str, Sequence[Optimum], Goal], Gaussian]
-"""Gauss–Newton steps of an observation, from a start, in an attempt, by a name, which may end at
-known optima, to a goal."""
+Steps = Callable[[Observation, FloatArray, int, str | None, Sequence[Optimum], Goal], Gaussian]
+"""Gauss–Newton steps of an observation, from a start, in an attempt, by a name (of what an
+interrupted run remembers) or none, which may end at known optima, to a goal."""
 
 
 @dataclass(eq=False)

@@ -16,11 +16,12 @@ all but as well. From starts about that one, with a new stretch of V each, they 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 
-from disorder_landscape.inference.optimum import Optimum, best, optimum_at
+from disorder_landscape.inference.checkpoint import Cache, cached_gaussian, uncached
+from disorder_landscape.inference.optimum import best, optimum_at
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.problem.unknowns import Unknowns
@@ -35,24 +36,21 @@ HIGHEST = 4
 """The way down begins with so many lines of μ."""
 WAYS_DOWN = 3
 """At most. The first is from the middle of the prior, the others from draws."""
-EXPLAINED = 2.0
-"""Steps go on to the next part if χ² is this many of its standard deviations above its mean, or
-less. (With 3.5 a way went on with V 94 µeV off, and with 2.7 of all data it was 58 µeV off.)"""
 REDRAWN = 40
-"""A way ends where so many new stretches of V have not led to an optimum that explains a part."""
+"""A way ends where so many new stretches of V have not led to an optimum that fits a part."""
 STRETCH = 8.0, 35.0
 """Standard deviation of the Gaussian window in which V is drawn anew, in sites: the least and the
 largest."""
-DRAWN_ANEW = 0.3, 0.6, 1.0
+DRAWN_ANEW = 0.15, 0.3, 0.6, 1.0
 """Share of the new V in the middle of the window, root mean square; what was there has the rest."""
-STARTS = 16
+STARTS = 40
 """After each way down that leads to an optimum that fits, its own end the first. The others have a
 new stretch of V each. (Starts that differ everywhere, by a fifth of the prior's width, serve where
 disorder is weak. Where it is strong they are too far off.)"""
 
 
 def optima_of_whole_landscape(
-    observation: Observation, steps: Steps, seed: int
+    observation: Observation, steps: Steps, seed: int, cache: Cache = uncached
 ) -> tuple[Optima, int]:
     """Return the optima to which steps over lower and lower μ lead, and how many ways down."""
     optima = Optima(observation, observation.on_few_points(*MORE), steps)
@@ -60,39 +58,35 @@ def optima_of_whole_landscape(
     prior, rng = observation.unknowns.prior, np.random.default_rng([seed, 2**31 + 3])
     for way in range(WAYS_DOWN):
         x = prior.mean if way == 0 else prior.draw(rng, 2)[0]
-        end = _way_down([*few, optima.some, observation], x, steps, way, rng)
-        optima.end_at(end.answer.mean, way, "place")
+        for number, part in enumerate([*few, optima.some, observation]):
+            stretches = np.random.default_rng([seed, 2**31 + 3, way, number])
+            make = partial(_answer_of_part, part, x, steps, way, stretches)
+            answer = cached_gaussian(cache, f"part.{way}.{number}", make)
+            x = answer.mean
+            if not optimum_at(part, answer).fits:
+                break
+        optima.end_at(x, way, "place")
         until = optima.starts + STARTS - 1
-        while optima.fits and not optima.is_done and optima.starts < until:
+        while optima.fits and not optima.is_settled and optima.starts < until:
             x = with_new_stretch(observation.unknowns, best(optima.found).answer, rng)
             optima.start_from(x, way)
-        if optima.is_done:
+        if optima.fits:
+            optima.refine(way)
             break
-    if optima.fits:
-        optima.refine(way)
     return optima, way + 1
 
 
-def _way_down(
-    parts: Sequence[Observation], x: FloatArray, steps: Steps, way: int, rng: np.random.Generator
-) -> Optimum:
-    """Return where steps with one part of the data after the other end.
-
-    That is an optimum of the last part if it fits, or of the first one that none is found to fit.
-    """
-    for number, part in enumerate(parts):
-        name = f"{way}.part.{number}"
-        end = optimum_at(part, steps(part, x, way, name, (), "better"))
-        for count in range(REDRAWN):
-            if end.excess <= EXPLAINED:
-                break
-            x = with_new_stretch(part.unknowns, end.answer, rng)
-            tried = optimum_at(part, steps(part, x, way, f"{name}.{count}", [end], "better"))
-            end = best([end, tried])
-        x = end.answer.mean
-        if end.excess > EXPLAINED:
+def _answer_of_part(
+    part: Observation, x: FloatArray, steps: Steps, way: int, rng: np.random.Generator
+) -> Gaussian:
+    """Return an optimum that explains a part of the data, or the best one if none is found to."""
+    end = optimum_at(part, steps(part, x, way, None, (), "better"))
+    for _ in range(REDRAWN):
+        if end.fits:
             break
-    return end
+        x = with_new_stretch(part.unknowns, end.answer, rng)
+        end = best([end, optimum_at(part, steps(part, x, way, None, [end], "better"))])
+    return end.answer
 
 
 def with_new_stretch(unknowns: Unknowns, answer: Gaussian, rng: np.random.Generator) -> FloatArray:
