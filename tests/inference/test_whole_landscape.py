@@ -13,7 +13,7 @@ from disorder_landscape.inference.problem.observation import Observation, noise_
 from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.search.whole_landscape import (
-    MUCH,
+    DRAWN_ANEW,
     REDRAWN,
     STARTS,
     WAYS_DOWN,
@@ -75,12 +75,12 @@ def test_a_new_stretch_of_v_is_as_probable_as_the_old_one():
     rng = np.random.default_rng(0)
     many = UNKNOWNS.prior.draw(rng, 2000)
     answers = (Gaussian(x, UNKNOWNS.prior.covariance) for x in many)
-    changed = np.array([with_new_stretch(UNKNOWNS, answer, MUCH, rng) for answer in answers])
+    changed = np.array([with_new_stretch(UNKNOWNS, answer, rng) for answer in answers])
     before, after = UNKNOWNS.potential(many), UNKNOWNS.potential(changed)
     assert after.std() == pytest.approx(before.std(), rel=0.03)
     off = (after - before).std(axis=0) / before.std(axis=0)
-    assert np.all(off < np.sqrt(2) * max(MUCH))
-    assert np.all(off > np.sqrt(2) * min(MUCH) / 2)
+    assert np.all(off < np.sqrt(2) * max(DRAWN_ANEW))
+    assert np.all(off > np.sqrt(2) * min(DRAWN_ANEW) / 2)
 
 
 def test_a_new_stretch_leaves_the_rest():
@@ -88,7 +88,7 @@ def test_a_new_stretch_leaves_the_rest():
     rng = np.random.default_rng(3)
     x = long.prior.draw(rng, 2)[0]
     answer = Gaussian(x, long.prior.covariance)
-    off = long.potential(with_new_stretch(long, answer, MUCH, rng)) - long.potential(x)
+    off = long.potential(with_new_stretch(long, answer, rng)) - long.potential(x)
     assert abs(off).max() > 0.05
     assert np.sum(abs(off) < 0.01) > 60
 
