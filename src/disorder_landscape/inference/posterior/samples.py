@@ -29,7 +29,7 @@ Mahalanobis distances of the truth, Laplace's error bars are right below that wi
 small above it."""
 NARROW_PARAMETERS = 1
 """It is asked, too, where more parameters of the device are unknown: the posterior may bend along
-these while V is sharp. (Of 64 wires with six, one was 7.9 µeV off with an error bar of 1.0; that
+these while V is sharp. (Of 72 wires with six, one was 8.0 µeV off with an error bar of 1.0; that
 was next to Γ = 0.)"""
 NORMAL, LEAST_NORMAL = 0.97, 0.3
 """… The posterior is taken for Laplace's approximation if samples of the latter, weighted by the
