@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import disorder_landscape as dl
+from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.invert import invert
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.measurement import Measurement
@@ -164,12 +165,7 @@ def test_other_ways_down_are_tried_from_draws_of_the_prior(whole):
 def test_an_interrupted_search_goes_on_with_the_next_part(whole):
     """Each part has stretches of its own."""
     exact = posterior(whole)
-    kept, begun = {}, []
-
-    def cache(name, calculate):
-        if name not in kept:
-            kept[name] = calculate()
-        return kept[name]
+    kept, begun = Checkpoint(), []
 
     def steps(of, x, attempt, name, known, goal):
         begun.append(x)
@@ -180,10 +176,10 @@ def test_an_interrupted_search_goes_on_with_the_next_part(whole):
 
     interrupted = 2 * PARTS + 2
     with pytest.raises(KeyboardInterrupt):
-        optima_of_whole_landscape(whole, steps, 0, cache)
+        optima_of_whole_landscape(whole, steps, 0, kept.cached)
     first, interrupted = begun[:], 0
     begun.clear()
-    optima_of_whole_landscape(whole, steps, 0, cache)
+    optima_of_whole_landscape(whole, steps, 0, kept.cached)
     np.testing.assert_array_equal(begun[0], first[-2])
     np.testing.assert_array_equal(begun[1], first[-1])
     assert len(kept) == PARTS + 2

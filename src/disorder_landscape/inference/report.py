@@ -24,7 +24,6 @@ OTHERWISE = 1.25
 SURE = 0.95
 """What at least this share of the samples has is taken for sure."""
 
-MAY_CHANGE = "more steps or samples may change them, and the answer"
 NOT_TO_BE_TRUSTED = "so neither error bars nor P(topological) are to be trusted"
 
 
@@ -152,7 +151,9 @@ def discrepancy_sentence(result: xr.Dataset) -> str:
     if not each:
         return ""
     are = f"Errors beside the noise are allowed for, in e²/h: {', '.join(each)}."
-    return are if left.attrs.get("settled", 1) else f"{are} They have not settled: {MAY_CHANGE}."
+    if left.attrs.get("settled", 1):
+        return are
+    return f"{are} They have not settled: more steps or samples may change them, and the answer."
 
 
 def not_fixed_lines(result: xr.Dataset) -> list[str]:

@@ -101,8 +101,7 @@ class Observation:
         """
         axes = []
         for axis, count in enumerate(counts):
-            others = tuple({0, 1, 2, 3} - {axis})
-            measured = np.flatnonzero(self.is_measured.any(axis=others))
+            measured = self._measured_along(axis)
             few = np.linspace(0, measured.size - 1, min(count, measured.size))
             axes.append(measured[few.round().astype(int)])
         return self.at(*axes)
@@ -113,11 +112,16 @@ class Observation:
         Lines of which nothing was measured do not count.
         """
         m = self.measurement
-        measured = np.flatnonzero(self.is_measured.any(axis=(1, 2, 3)))
+        measured = self._measured_along(0)
         upwards = measured[np.argsort(m.mu[measured])]
         B, bias = np.arange(m.B.size), np.arange(m.bias.size)
         counts = range(min(first, upwards.size), upwards.size + 1)
         return [self.at(np.sort(upwards[-count:]), B, bias) for count in counts]
+
+    def _measured_along(self, axis: int) -> NDArray[np.int64]:
+        """Return at which points of μ, B or bias, the first three axes, anything was measured."""
+        others = tuple({0, 1, 2, 3} - {axis})
+        return np.flatnonzero(self.is_measured.any(axis=others))
 
     def at(
         self, mu: NDArray[np.int64], B: NDArray[np.int64], bias: NDArray[np.int64]

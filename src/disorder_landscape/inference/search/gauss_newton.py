@@ -34,10 +34,10 @@ ENOUGH = 0.3
 """Steps end when one lowers −2 log(posterior) by less than this, which is half a standard deviation
 of all unknowns together. The simulation's own error adds about as much at a noise of 0.01 e²/h."""
 ROUGHLY = 3.0
-"""… or by less than this, where only an optimum's place or a fit is asked for."""
+"""… or by less than this, where not the optimum itself is asked for."""
 CREEPING, LATELY = 0.5, 4
-"""Steps that creep end, too, where no optimum is asked for: if the noise does not explain the
-misfit, and −2 log(posterior) less the number of data, which is about what noise alone makes, is
+"""Steps that creep end, too, where an optimum's place is asked for: if the noise does not explain
+the misfit, and −2 log(posterior) less the number of data, which is about what noise alone makes, is
 more than this part of what it was so many steps ago. (Steps that arrive halve it in one or two.)"""
 NEAR = 0.5
 """Steps end at a known optimum if they come this near, in its standard deviations, root mean square
@@ -48,10 +48,9 @@ BEHIND = (5, 2.0), (10, 1.2)
 high. (Of 123 such steps in two wires of 300 sites 47 led below. After five, all but one of these
 were at most 1.6 times as high; after ten, at most as high.)"""
 
-Goal = Literal["optimum", "place", "fit", "better"]
-"""Where steps end: at an optimum, near one (as ROUGHLY and CREEPING say), as soon as the noise
-explains the misfit, or near an optimum, creeping or not, unless that will hardly be below all known
-ones (as BEHIND says)."""
+Goal = Literal["optimum", "place", "better"]
+"""Where steps end: at an optimum, near one (as ROUGHLY and CREEPING say), or near one, creeping or
+not, unless that will hardly be below all known ones (as BEHIND says)."""
 
 
 def gauss_newton(
@@ -72,7 +71,7 @@ def gauss_newton(
         standard deviation of V in meV.
     known : sequence of Optimum
         Steps that come near one of these, and not below it, end there.
-    goal : "optimum", "place", "fit" or "better"
+    goal : "optimum", "place" or "better"
     """
     prior, variance = observation.unknowns.prior, observation.variance
     precision = np.linalg.inv(prior.covariance)
@@ -107,15 +106,12 @@ def gauss_newton(
         heights.append(best)
         if gained < (ROUGHLY if roughly else ENOUGH):
             break
-        if goal in ("place", "fit"):
-            explained = is_noise(chi_square_excess(observation, y))
-            ends = goal == "fit" if explained else _creep(heights, y.size)
-            if ends:
-                break
         if goal == "better":
             if _is_behind(heights, known):
                 break
         else:
+            if goal == "place" and _creep(observation, heights, y):
+                break
             for one in known:
                 if best > one.objective and is_near(one, x):
                     return one.answer
@@ -124,11 +120,11 @@ def gauss_newton(
     return laplace(observation, x, slope)
 
 
-def _creep(heights: Sequence[float], data: int) -> bool:
-    """Return whether steps through these values of −2 log(posterior) lead nowhere."""
-    if len(heights) <= LATELY:
+def _creep(observation: Observation, heights: Sequence[float], y: FloatArray) -> bool:
+    """Return whether steps through these values of −2 log(posterior), to data y, lead nowhere."""
+    if len(heights) <= LATELY or is_noise(chi_square_excess(observation, y)):
         return False
-    return heights[-1] - data > CREEPING * (heights[-1 - LATELY] - data)
+    return heights[-1] - y.size > CREEPING * (heights[-1 - LATELY] - y.size)
 
 
 def _is_behind(heights: Sequence[float], known: Sequence[Optimum]) -> bool:
