@@ -170,6 +170,8 @@ def test_what_is_more_probable_is_right_over_many_wires(lines, wide):
         found = Outcome([optimum_at(lines, exact)], drawn)
         share += [found.more_probable(float(one)) for one in height]
     assert kstest(share, "uniform").statistic < 0.06
+    z_scores = np.concatenate([found.z_scores(x) for x in truths])
+    assert kstest(z_scores, "norm").statistic < 0.04
 
 
 def test_what_is_more_probable_does_not_depend_on_the_posteriors_shape():
@@ -185,12 +187,18 @@ def test_what_is_more_probable_does_not_depend_on_the_posteriors_shape():
     assert weighted.effective_sample_size > 2000
     truths = weighted.draw(rng, 500)
     height = objective(folds, truths, folds.simulate(truths))
-    right, wrong = [], []
+    right, wrong, z_scores, of_moments = [], [], [], []
     for seed in range(10):
         *_, drawn = importance_sampling(folds, [Part(one, 0.5) for one in valleys], [seed])
-        for found, shares in ((drawn, right), (_evenly_weighted(drawn), wrong)):
-            outcome = Outcome([optimum_at(folds, valleys[0])], found)
-            shares += [outcome.more_probable(float(one)) for one in height]
+        for one, shares in ((_evenly_weighted(drawn), wrong), (drawn, right)):
+            found = Outcome([optimum_at(folds, valleys[0])], one)
+            shares += [found.more_probable(float(h)) for h in height]
+        z_scores += [found.z_scores(x) for x in truths]
+        normal = Outcome([replace(optimum_at(folds, valleys[0]), answer=drawn.moments)])
+        of_moments += [normal.z_scores(x) for x in truths]
+    distance = [kstest(np.ravel(z), "norm").statistic for z in (z_scores, of_moments)]
+    assert distance[0] < 0.04
+    assert distance[1] > 0.08
     assert kstest(right, "uniform").statistic < 0.05
     assert kstest(wrong, "uniform").statistic > 0.1
 

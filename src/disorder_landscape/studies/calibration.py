@@ -102,7 +102,7 @@ class CalibrationPlan(Plan):
 
 
 def z_scores(table: pd.DataFrame) -> FloatArray:
-    """Return the truths' distances from the answers in standard deviations, all unknowns."""
+    """Return those of the truths in the answers, of all unknowns (`Outcome.z_scores`)."""
     return np.concatenate([np.array(text.split(), dtype=float) for text in table["z_scores"]])
 
 

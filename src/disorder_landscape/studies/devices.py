@@ -98,8 +98,8 @@ def device_row(task: Task, group: Devices) -> dict[str, object]:
         `site_error` of V in meV, root mean square over the sites, and its error bar `spread`; the
         same of V less its mean, `shape_error` and `shape_spread`; `more_probable`, how much of
         the posterior is more probable than the truth; the outcome of `Inverted`; and, as text, for
-        each unknown `z_scores`, the truth's distance in standard deviations, and `widths`, the
-        standard deviation as a share of the prior's.
+        each unknown `z_scores` of the truth (`Outcome.z_scores`), and `widths`, the standard
+        deviation as a share of the prior's.
     """
     unknowns, seed = group.unknowns, seed_of(task.name, task.index)
     device, truth = drawn_device(unknowns, group.grid, seed)
@@ -120,7 +120,7 @@ def device_row(task: Task, group: Devices) -> dict[str, object]:
     }
     return {
         **rounded(row | found.outcome),
-        "z_scores": " ".join(f"{z:.3f}" for z in (truth - mean) / std),
+        "z_scores": " ".join(f"{z:.3f}" for z in found.found.z_scores(truth)),
         "widths": " ".join(f"{width:.3g}" for width in std),
     }
 

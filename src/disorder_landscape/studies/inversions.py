@@ -41,7 +41,7 @@ def inversion_row(task: Task) -> dict[str, object]:
     dict
         V errors in meV, root mean square over the sites; the errors of α in meV nm; `scaled_error`,
         the mean square error of the paper's labels in units of their variance, which is 1 − R²;
-        `z_scores`, the true unknowns' distances from the answer in its standard deviations;
+        `z_scores` of the true unknowns (`Outcome.z_scores`);
         `more_probable`, how much of the posterior is more probable than the truth; and the outcome
         of `Inverted`.
     """
@@ -67,5 +67,5 @@ def inversion_row(task: Task) -> dict[str, object]:
         "more_probable": more_probable(observation, found.found, truth),
         **found.outcome,
     }
-    z = (truth - mean) / np.sqrt(np.diag(found.answer.covariance))
-    return {**rounded(row), "z_scores": " ".join(f"{one:.3f}" for one in z)}
+    z_scores = found.found.z_scores(truth)
+    return {**rounded(row), "z_scores": " ".join(f"{z:.3f}" for z in z_scores)}
