@@ -35,8 +35,9 @@ class Slopes(NamedTuple):
 
     data: FloatArray
     slope: FloatArray
-    doubtful: NDArray[np.bool_]
-    """Where neither is exact, shape (mu, B)."""
+    doubt: FloatArray
+    """The estimated errors of the derivatives, in units of those up to which they are trusted, shape
+    (mu, B). Infinite where the data are not exact."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,7 +151,7 @@ class Observation:
         if not _closed_form_has_slopes(wire, at):
             return None
         trusted = _trusted(wire, at)
-        G, slopes, doubtful = [], [], []
+        G, slopes, doubt = [], [], []
         for points in range(0, at.mu.size, POINTS_AT_ONCE):
             some = slice(points, points + POINTS_AT_ONCE)
             found = gradients.at_a_temperature(
@@ -165,10 +166,10 @@ class Observation:
             part = replace(self.measurement, mu=self.measurement.mu[some])
             G.append(found.conductance)
             slopes.append(np.nan_to_num(self.unknowns.slopes(x, part, found.by)))
-            exact = (found.gradient_error <= trusted) & (found.error <= SOLVER_ERROR)
-            doubtful.append(~exact)
+            exact = found.error <= SOLVER_ERROR
+            doubt.append(np.where(exact, found.gradient_error / trusted, np.inf))
         slope = np.concatenate(slopes)[self.is_measured].T
-        return Slopes(np.concatenate(G)[self.is_measured], slope, np.concatenate(doubtful))
+        return Slopes(np.concatenate(G)[self.is_measured], slope, np.concatenate(doubt))
 
     def of_set(self, mu: int, B: int) -> tuple[Observation, NDArray[np.int64]]:
         """Return the observation of one (μ, B), and the places of its data, shape (datum,)."""
