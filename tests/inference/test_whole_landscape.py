@@ -118,8 +118,8 @@ def test_steps_use_more_and_more_data_until_starts_agree(whole):
         return exact
 
     optima, ways = optima_of_whole_landscape(whole, steps, 0)
-    down, some = [(0, "better")] * (PARTS + 2), (0, "place")
-    assert asked == [*down, (0, "place"), some, (0, "optimum"), some, (0, "optimum")]
+    down, end = [(0, "better")] * (PARTS + 2), (0, "optimum")
+    assert asked == [*down, end, (0, "better"), end, (0, "better")]
     assert ways == 1
     assert optima.is_settled
     assert optima.found[0].found_by == (0, 0, 0)

@@ -113,15 +113,13 @@ def gauss_newton(
         heights.append(best)
         if gained < (ROUGHLY if roughly else ENOUGH):
             break
-        if goal == "better":
-            if _is_behind(heights, known):
-                break
-        else:
-            if goal == "place" and _creep(observation, heights, y):
-                break
-            for one in known:
-                if best > one.objective and is_near(one, x):
-                    return one.answer
+        if goal == "better" and _is_behind(heights, known):
+            break
+        if goal == "place" and _creep(observation, heights, y):
+            break
+        for one in known:
+            if best > one.objective and is_near(one, x):
+                return one.answer
         slope = linearise(observation, x, roughly)[1]
         damping = 0.0 if damping <= first else damping / factor
     return laplace(observation, x, slope)
