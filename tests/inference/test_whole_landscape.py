@@ -15,7 +15,9 @@ from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.search.whole_landscape import (
     DRAWN_ANEW,
-    REDRAWN,
+    DRAWS,
+    FEW,
+    HIGHEST,
     STARTS,
     WAYS_DOWN,
     optima_of_whole_landscape,
@@ -28,7 +30,6 @@ from linear_data import DATA, Linear, posterior
 
 SITES, AMPLITUDE, NOISE = 30, 0.8, 0.002
 MU, B, BIAS = np.linspace(0, 4.2, 12), np.linspace(0, 0.8, 3), np.linspace(-0.08, 0.08, 5)
-PARTS = 3
 NOTHING = Measurement(np.zeros((12, 3, 5, 4)), MU, B, BIAS, 0.0, (15.0, 15.0), 0.05)
 UNKNOWNS = Unknowns(
     Prior(components=None, sites=SITES, amplitude=AMPLITUDE).for_measurement(NOTHING)
@@ -51,13 +52,18 @@ def test_v_of_every_site_is_found_without_a_guess():
     assert abs((UNKNOWNS.potential(found.answer.mean) - V) / std).max() < 4
 
 
-def test_parts_hold_the_highest_mu_that_are_measured():
+def test_random_points_are_of_the_highest_mu_that_are_measured():
     G = np.zeros_like(NOTHING.G)
     G[[1, 10]] = np.nan
-    reversed_axis = replace(NOTHING, G=G, mu=MU[::-1])
-    parts = Observation(reversed_axis, UNKNOWNS, np.ones(4)).on_highest_lines(3)
-    assert [part.measurement.mu.size for part in parts] == list(range(3, 11))
-    np.testing.assert_array_equal(parts[0].measurement.mu, MU[[11, 9, 8]])
+    observation = Observation(replace(NOTHING, G=G, mu=MU[::-1]), UNKNOWNS, np.ones(4))
+    seen, rng = set(), np.random.default_rng(0)
+    for _ in range(100):
+        part = observation.on_random_points(0.5, (2, 9, 2), rng)
+        assert part.measurement.G.shape == (2, 2, 2, 4)
+        assert np.all(np.diff(part.measurement.B) > 0)
+        seen |= set(part.measurement.mu)
+    assert seen == set(MU[[11, 9, 8, 7, 6]])
+    assert observation.on_random_points(0.01, (1, 1, 1), rng).measurement.mu == MU[11]
 
 
 def test_few_points_are_spread_over_what_is_measured():
@@ -94,103 +100,116 @@ def test_a_new_stretch_leaves_the_rest():
     assert np.sum(abs(off) < 0.01) > 60
 
 
-@pytest.fixture
-def whole():
-    slope = np.random.default_rng(0).normal(size=(len(UNKNOWNS.names), DATA))
-    return Whole(np.zeros(DATA), slope, unknowns=UNKNOWNS, measurement=NOTHING)
-
-
 class Whole(Linear):
     """Linear data of a whole landscape, all of them in each part."""
 
     def on_few_points(self, *counts):
         return replace(self)
 
-    def on_highest_lines(self, first):
-        return [replace(self) for _ in range(PARTS)]
+    def on_random_points(self, highest, counts, rng):
+        return replace(self)
 
 
-def test_steps_use_more_and_more_data_until_starts_agree(whole):
+@pytest.fixture
+def whole():
+    slope = np.random.default_rng(0).normal(size=(len(UNKNOWNS.names), DATA))
+    return Whole(np.zeros(DATA), slope, unknowns=UNKNOWNS, measurement=NOTHING)
+
+
+@pytest.fixture
+def far(whole):
+    """An answer that explains nothing."""
+    exact = posterior(whole)
+    return Gaussian(30 + exact.mean, 1e-4 * np.eye(exact.mean.size))
+
+
+DEPTHS = FEW[0] - HIGHEST
+"""Before the last one."""
+
+
+def test_steps_use_lower_and_lower_mu_until_starts_agree(whole):
     exact, asked = posterior(whole), []
 
     def steps(of, x, attempt, name, known, goal):
-        asked.append((attempt, goal))
+        asked.append((name, goal))
         return exact
 
     optima, ways = optima_of_whole_landscape(whole, steps, 0)
-    down, end = [(0, "better")] * (PARTS + 2), (0, "optimum")
-    assert asked == [*down, end, (0, "better"), end, (0, "better")]
+    on_draws = (None, "better")
+    assert asked == [
+        *[on_draws] * DEPTHS,
+        *[("down.0.24.some", "better"), ("down.0.all", "better"), ("0.0", "optimum")],
+        *[on_draws, ("0.1.some", "better"), ("0.1", "optimum")],
+        *[on_draws, ("0.2.some", "better")],
+    ]
     assert ways == 1
     assert optima.is_settled
     assert optima.found[0].found_by == (0, 0, 0)
 
 
-def test_a_stretch_is_drawn_anew_until_the_noise_explains_a_part(whole):
-    exact, asked = posterior(whole), []
-    far = Gaussian(30 + exact.mean, 1e-4 * np.eye(exact.mean.size))
+def test_data_are_drawn_until_they_are_explained(whole, far, monkeypatch):
+    """… of the last lines, until two draws are before any step."""
+    lines, ends = [], [far, far]
+
+    def of(self, highest, counts, rng):
+        lines.append((highest, counts[0]))
+        return replace(self)
 
     def steps(of, x, attempt, name, known, goal):
-        asked.append((goal, len(known)))
-        return far if len(asked) <= 4 else exact
+        return ends.pop() if ends else posterior(whole)
 
-    optima, ways = optima_of_whole_landscape(whole, steps, 0)
-    assert asked[:7] == [("better", 0), *[("better", 1)] * 4, ("better", 0), ("better", 0)]
-    assert ways == 1
-    assert optima.is_settled
+    monkeypatch.setattr(Whole, "on_random_points", of)
+    optima_of_whole_landscape(whole, steps, 0)
+    counts = [HIGHEST] * 2 + list(range(HIGHEST, FEW[0])) + [FEW[0]] * 2
+    assert lines[: len(counts)] == [(count / FEW[0], count) for count in counts]
 
 
-def test_other_ways_down_are_tried_from_draws_of_the_prior(whole):
-    """Where no new stretch helps, a way ends with all data."""
-    begun, ends, redrawn = [], [], []
-    far = Gaussian(30 + posterior(whole).mean, 1e-4 * np.eye(len(UNKNOWNS.names)))
+def test_other_ways_down_are_tried_from_draws_of_the_prior(whole, far):
+    """Where no draw of data leads to an answer, a way ends with all data."""
+    begun, names = [], []
 
     def steps(of, x, attempt, name, known, goal):
-        if goal != "better":
-            ends.append(attempt)
-        elif known:
-            redrawn.append(attempt)
-        else:
+        if not names or names[-1] is not None:
             begun.append(x)
+        names.append(name)
+        assert goal == ("better" if name is None else "place")
         return far
 
     optima, ways = optima_of_whole_landscape(whole, steps, 0)
     assert ways == WAYS_DOWN == len(begun)
-    assert ends == list(range(WAYS_DOWN))
-    assert len(redrawn) == REDRAWN * WAYS_DOWN
+    assert [name for name in names if name] == [f"{way}.{way}" for way in range(WAYS_DOWN)]
+    assert names.count(None) == DRAWS * WAYS_DOWN
     assert not begun[0].any()
     assert abs(begun[1] - begun[2]).max() > 1
     assert not optima.fits
 
 
-def test_an_interrupted_search_goes_on_with_the_next_part(whole):
-    """Each part has stretches of its own."""
-    exact = posterior(whole)
-    kept, begun = Checkpoint(), []
+def test_an_interrupted_search_goes_on_with_the_next_lines(whole):
+    """Each depth has draws of its own."""
+    exact, kept, begun = posterior(whole), Checkpoint(), []
 
     def steps(of, x, attempt, name, known, goal):
         begun.append(x)
         if len(begun) == interrupted:
             raise KeyboardInterrupt
-        far = Gaussian(x + 30, exact.covariance)
-        return exact if goal != "better" or len(known) > 0 else far
+        return Gaussian(exact.mean + 1e-6 * len(begun), exact.covariance)
 
-    interrupted = 2 * PARTS + 2
+    interrupted = 7
     with pytest.raises(KeyboardInterrupt):
         optima_of_whole_landscape(whole, steps, 0, kept.cached)
-    first, interrupted = begun[:], 0
+    assert len(kept) == interrupted - 1
+    last, interrupted = begun[-1], 0
     begun.clear()
     optima_of_whole_landscape(whole, steps, 0, kept.cached)
-    np.testing.assert_array_equal(begun[0], first[-2])
-    np.testing.assert_array_equal(begun[1], first[-1])
-    assert len(kept) == PARTS + 2
+    np.testing.assert_array_equal(begun[0], last)
+    assert len(kept) == DEPTHS + 3  # the last lines, and two more starts
 
 
-def test_starts_that_do_not_agree_end(whole):
+def test_starts_that_do_not_agree_end(whole, far):
     exact = posterior(whole)
-    far = Gaussian(30 + exact.mean, 1e-4 * np.eye(exact.mean.size))
 
     def steps(of, x, attempt, name, known, goal):
-        return exact if name in (None, "0.0", "best") else far
+        return far if name and name[0] == "0" and name != "0.0" else exact
 
     optima, ways = optima_of_whole_landscape(whole, steps, 0)
     assert ways == 1

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -36,8 +36,8 @@ class Slopes(NamedTuple):
     data: FloatArray
     slope: FloatArray
     doubt: FloatArray
-    """The estimated errors of the derivatives, in units of those up to which they are trusted, shape
-    (mu, B). Infinite where the data are not exact."""
+    """The estimated errors of the derivatives, in units of those up to which they are trusted,
+    shape (mu, B). Infinite where the data are not exact."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,17 +107,27 @@ class Observation:
             axes.append(measured[few.round().astype(int)])
         return self.at(*axes)
 
-    def on_highest_lines(self, first: int) -> list[Observation]:
-        """Return observations of the lines of so many μ, the highest ones, of one more, … of all.
+    def on_random_points(
+        self, highest: float, counts: Sequence[int], rng: np.random.Generator
+    ) -> Observation:
+        """Return an observation of random points of μ, B and bias, of the highest μ only.
 
-        Lines of which nothing was measured do not count.
+        Parameters
+        ----------
+        highest : float
+            Which share of the lines of μ counts. Points at which nothing was measured do not.
+        counts : sequence of int
+            How many points of each axis there are, but no more than half of them.
+        rng : Generator
         """
-        m = self.measurement
-        measured = self._measured_along(0)
-        upwards = measured[np.argsort(m.mu[measured])]
-        B, bias = np.arange(m.B.size), np.arange(m.bias.size)
-        counts = range(min(first, upwards.size), upwards.size + 1)
-        return [self.at(np.sort(upwards[-count:]), B, bias) for count in counts]
+        axes = [self._measured_along(axis) for axis in range(3)]
+        upwards = axes[0][np.argsort(self.measurement.mu[axes[0]])]
+        axes[0] = upwards[-int(np.ceil(highest * upwards.size)) :]
+        some = [
+            np.sort(rng.choice(axis, min(count, (axis.size + 1) // 2), replace=False))
+            for axis, count in zip(axes, counts, strict=True)
+        ]
+        return self.at(*some)
 
     def _measured_along(self, axis: int) -> NDArray[np.int64]:
         """Return at which points of μ, B or bias, the first three axes, anything was measured."""

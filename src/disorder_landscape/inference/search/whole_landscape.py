@@ -2,27 +2,29 @@
 
 No guess is near enough for Gauss–Newton steps with all data. But the higher μ is, the less V
 scatters the electrons back, and the wider the minima of −2 log of the posterior density are. So
-steps take the lines of the highest μ first, and add one lower line after the other. Of each line
-they take few data, since few data have fewer minima than many.
+steps take the lines of the highest μ first, and add lower and lower ones.
 
-Where the noise does not explain a part of the data, V is wrong somewhere, and right or harmless
-elsewhere: a stretch of it is drawn anew, and steps start again from there (basin hopping: Wales and
-Doye, J. Phys. Chem. A 101, 5111 (1997)). At one end or the other V is right first, and from there
-on it becomes so inwards, since electrons of low μ do not reach further.
+Few data have fewer minima than many. And at a minimum of some data that is not near the true V,
+other data seldom have one. So steps go on and on with other data: few points of μ, B and bias,
+drawn anew whenever steps have come to an end (as stochastic gradients do: Robbins and Monro, Ann.
+Math. Stat. 22, 400 (1951)). V becomes right from both ends inwards, as electrons of low μ do not
+reach further. It is found where it explains data that no step has used.
 
-With all data steps must go to the optimum itself: valleys bend, and steps that are content with less
-end some 50 µeV away, where the noise explains the data all but as well. Starts about that optimum,
-with a new stretch of V each, tell whether there is a better one.
+With all data steps must go to the optimum itself: valleys bend, and steps that are content with
+less end some 50 µeV away, where the noise explains the data all but as well. Starts about that
+optimum, with a new stretch of V each, tell whether there is a better one.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import numpy as np
 
-from disorder_landscape.inference.checkpoint import Cache, cached_gaussian, uncached
-from disorder_landscape.inference.optimum import best, optimum_at
+from disorder_landscape.inference.checkpoint import Cache, uncached
+from disorder_landscape.inference.optimum import best, chi_square_excess, is_noise
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.problem.unknowns import Unknowns
@@ -30,26 +32,28 @@ from disorder_landscape.inference.search.optima import Optima, Steps
 from disorder_landscape.model.parameters import FloatArray
 
 FEW = 24, 5, 7
-"""Points of μ, B and bias on the way down, …"""
+"""Points of μ, B and bias, drawn anew each time, at most, …"""
 MORE = 48, 5, 11
 """… and of the data that follow before all."""
 HIGHEST = 4
-"""The way down begins with so many lines of μ."""
-WAYS_DOWN = 3
+"""A way down begins with so many lines of the highest μ."""
+WAYS_DOWN = 5
 """At most. The first is from the middle of the prior, the others from draws."""
-REDRAWN = 40
-"""A way ends where so many new stretches of V have not led to an optimum that fits a part."""
+DRAWS = 30
+"""A way ends where so many draws of data have not led to a V that explains one of them."""
+FORETOLD = 2, 5.0
+"""With the lowest lines steps go on until V explains so many draws in a row before steps use them.
+χ² may be so many of its standard deviations above its mean: of 3,360 data it is two if all is well,
+since V is only as near as the draw before lets it be."""
+BACK = 5
+"""Where more data are not explained then, steps go back to draws, at most so many times."""
 STRETCH = 8.0, 35.0
 """Standard deviation of the Gaussian window in which V is drawn anew, in sites: the least and the
 largest."""
 DRAWN_ANEW = 0.3, 0.45, 0.6
-"""Share of the new V in the middle of the window, root mean square; what was there has the rest. (Of
-160 stretches of two wires of 300 sites, with 0.3, 0.6 and 1 each, 20, 10 and 1 led to a better
-optimum.)"""
+"""Share of the new V in the middle of the window, root mean square; what was there has the rest."""
 STARTS = 40
-"""After each way down that leads to an optimum that fits, its own end the first. The others have a
-new stretch of V each. (Starts that differ everywhere, by a fifth of the prior's width, serve where
-disorder is weak. Where it is strong they are too far off.)"""
+"""At most, after each way down that leads to an optimum that fits, its own end the first."""
 
 
 def optima_of_whole_landscape(
@@ -57,39 +61,85 @@ def optima_of_whole_landscape(
 ) -> tuple[Optima, int]:
     """Return the optima to which steps over lower and lower μ lead, and how many ways down."""
     optima = Optima(observation, observation.on_few_points(*MORE), steps, "better")
-    few = observation.on_few_points(*FEW).on_highest_lines(HIGHEST)
-    prior, rng = observation.unknowns.prior, np.random.default_rng([seed, 2**31 + 3])
     for way in range(WAYS_DOWN):
-        x = prior.mean if way == 0 else prior.draw(rng, 2)[0]
-        for number, part in enumerate([*few, optima.some, observation]):
-            stretches = np.random.default_rng([seed, 2**31 + 3, way, number])
-            make = partial(_answer_of_part, part, x, steps, way, stretches)
-            answer = cached_gaussian(cache, f"part.{way}.{number}", make)
-            x = answer.mean
-            fits = optimum_at(part, answer).fits
-            if not fits:
-                break
-        optima.end_at(x, way, "optimum" if fits else "place")
+        x, is_near = _way_down(observation, optima.some, steps, seed, way, cache)
+        optima.end_at(x, way, "optimum" if is_near else "place")
         until = optima.starts + STARTS - 1
         while optima.fits and not optima.is_settled and optima.starts < until:
-            x = with_new_stretch(observation.unknowns, best(optima.found).answer, rng)
-            optima.start_from(x, way)
+            number = FEW[0] + BACK + optima.starts
+            rng = np.random.default_rng([seed, 2**31 + 3, way, number])
+            start = with_new_stretch(observation.unknowns, best(optima.found).answer, rng)
+            make = partial(_from_draws, observation, FEW[0], start, steps, way, rng)
+            optima.start_from(_cached(cache, f"down.{way}.{number}", make)[0], way)
         if optima.fits:
             break
     return optima, way + 1
 
 
-def _answer_of_part(
-    part: Observation, x: FloatArray, steps: Steps, way: int, rng: np.random.Generator
-) -> Gaussian:
-    """Return an optimum that explains a part of the data, or the best one if none is found to."""
-    end = optimum_at(part, steps(part, x, way, None, (), "better"))
-    for _ in range(REDRAWN):
-        if end.fits:
+def _way_down(
+    observation: Observation, some: Observation, steps: Steps, seed: int, way: int, cache: Cache
+) -> tuple[FloatArray, bool]:
+    """Return unknowns (unknown,), and whether they explain data of all μ."""
+    prior = observation.unknowns.prior
+    draw = prior.draw(np.random.default_rng([seed, 2**31 + 3, way]), 2)[0]
+    x = prior.mean if way == 0 else draw
+    for number in range(HIGHEST, FEW[0] + BACK):
+        lines = min(number, FEW[0])
+        rng = np.random.default_rng([seed, 2**31 + 3, way, number])
+        make = partial(_from_draws, observation, lines, x, steps, way, rng)
+        x, goes_on = _cached(cache, f"down.{way}.{number}", make)
+        if not goes_on:
             break
-        x = with_new_stretch(part.unknowns, end.answer, rng)
-        end = best([end, optimum_at(part, steps(part, x, way, None, [end], "better"))])
-    return end.answer
+        if lines == FEW[0]:
+            x = steps(some, x, way, f"down.{way}.{number}.some", (), "better").mean
+            if is_noise(_excess(some, x)):
+                return steps(observation, x, way, f"down.{way}.all", (), "better").mean, True
+    return x, False
+
+
+def _from_draws(
+    observation: Observation,
+    lines: int,
+    x: FloatArray,
+    steps: Steps,
+    way: int,
+    rng: np.random.Generator,
+) -> tuple[FloatArray, bool]:
+    """Return unknowns to which steps lead, and whether these explain a draw of so many lines.
+
+    With the lowest lines steps go on until the unknowns explain draws that no step has used.
+    """
+    in_a_row = 0
+    for _ in range(DRAWS):
+        part = observation.on_random_points(lines / FEW[0], (lines, *FEW[1:]), rng)
+        if lines == FEW[0]:
+            in_a_row = in_a_row + 1 if _excess(part, x) <= FORETOLD[1] else 0
+            if in_a_row == FORETOLD[0]:
+                return x, True
+            if in_a_row > 0:
+                continue
+        x = steps(part, x, way, None, (), "better").mean
+        if lines < FEW[0] and is_noise(_excess(part, x)):
+            return x, True
+    return x, lines == FEW[0]
+
+
+def _cached(
+    cache: Cache, name: str, make: Callable[[], tuple[FloatArray, bool]]
+) -> tuple[FloatArray, bool]:
+    """Return what `_from_draws` does, from the file or made now."""
+
+    def calculate() -> dict[str, Any]:
+        x, goes_on = make()
+        return {"x": x.tolist(), "goes_on": goes_on}
+
+    found = cache(name, calculate)
+    return np.array(found["x"]), found["goes_on"]
+
+
+def _excess(observation: Observation, x: FloatArray) -> float:
+    """Return (χ² − its mean) / its standard deviation at x (unknown,)."""
+    return chi_square_excess(observation, observation.simulate(x[None])[0])
 
 
 def with_new_stretch(unknowns: Unknowns, answer: Gaussian, rng: np.random.Generator) -> FloatArray:
