@@ -139,8 +139,8 @@ def test_steps_use_lower_and_lower_mu_until_starts_agree(whole):
     assert asked == [
         *[on_draws] * DEPTHS,
         *[("down.0.24.some", "better"), ("down.0.all", "better"), ("0.0", "optimum")],
-        *[on_draws, ("0.1.some", "better"), ("0.1", "optimum")],
-        *[on_draws, ("0.2.some", "better")],
+        *[on_draws, ("0.1.some", "better"), ("0.1", "better")],
+        *[on_draws, ("0.2.some", "better"), ("best", "optimum")],
     ]
     assert ways == 1
     assert optima.is_settled

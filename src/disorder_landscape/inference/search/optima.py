@@ -50,14 +50,14 @@ class Optima:
     some : Observation
         The part of its data that steps use first.
     steps : callable
-    goal : "place" or "better"
-        Of the steps that use it.
+    goals : pair
+        Of steps with that part from a start, and then with all data.
     """
 
     observation: Observation
     some: Observation
     steps: Steps
-    goal: Goal = "place"
+    goals: tuple[Goal, Goal] = ("place", "optimum")
     found: list[Optimum] = field(default_factory=list)
     starts: int = 0
     _on_some: list[tuple[Optimum, int | None]] = field(default_factory=list)
@@ -99,7 +99,8 @@ class Optima:
         """Find the optimum that steps from x (unknown,) lead to, with some of the data first."""
         name = self._next_name(attempt)
         known = [one for one, _ in self._on_some]
-        end = self.steps(self.some, x, attempt, f"{name}.some", known, self.goal)
+        on_some, on_all = self.goals
+        end = self.steps(self.some, x, attempt, f"{name}.some", known, on_some)
         for one, leads_to in self._on_some:
             if is_near(one, end.mean):
                 self._found_again(leads_to, attempt)
@@ -107,19 +108,26 @@ class Optima:
         near = optimum_at(self.some, end, attempt)
         least = best([*known, near]).objective
         leave = not near.fits or near.objective > least + REACH
-        to = None if leave else self._optimum_from(end.mean, attempt, name)
+        to = None if leave else self._optimum_from(end.mean, attempt, name, on_all)
         self._on_some.append((near, to))
 
     def end_at(self, x: FloatArray, attempt: int, goal: Goal = "optimum") -> Optimum:
         """Return the optimum that steps from x (unknown,) with all data lead to."""
         return self.found[self._optimum_from(x, attempt, self._next_name(attempt), goal)]
 
+    def refine(self, attempt: int) -> None:
+        """Go on to the best optimum itself, where steps have ended near it. This is no start."""
+        one = best(self.found)
+        end = self.steps(self.observation, one.answer.mean, attempt, "best", (), "optimum")
+        refined = replace(optimum_at(self.observation, end), found_by=one.found_by)
+        self.found[self.found.index(one)] = refined
+
     def _next_name(self, attempt: int) -> str:
         """Count a start, and return its name."""
         self.starts += 1
         return f"{attempt}.{self.starts - 1}"
 
-    def _optimum_from(self, x: FloatArray, attempt: int, name: str, goal: Goal = "optimum") -> int:
+    def _optimum_from(self, x: FloatArray, attempt: int, name: str, goal: Goal) -> int:
         """Return which optimum of all data steps lead to."""
         end = self.steps(self.observation, x, attempt, name, self.found, goal)
         new = optimum_at(self.observation, end, attempt)

@@ -60,9 +60,10 @@ def optima_of_whole_landscape(
     observation: Observation, steps: Steps, seed: int, cache: Cache = uncached
 ) -> tuple[Optima, int]:
     """Return the optima to which steps over lower and lower μ lead, and how many ways down."""
-    optima = Optima(observation, observation.on_few_points(*MORE), steps, "better")
+    some = observation.on_few_points(*MORE)
+    optima = Optima(observation, some, steps, ("better", "better"))
     for way in range(WAYS_DOWN):
-        x, is_near = _way_down(observation, optima.some, steps, seed, way, cache)
+        x, is_near = _way_down(observation, some, steps, seed, way, cache)
         optima.end_at(x, way, "optimum" if is_near else "place")
         until = optima.starts + STARTS - 1
         while optima.fits and not optima.is_settled and optima.starts < until:
@@ -72,6 +73,7 @@ def optima_of_whole_landscape(
             make = partial(_from_draws, observation, FEW[0], start, steps, way, rng)
             optima.start_from(_cached(cache, f"down.{way}.{number}", make)[0], way)
         if optima.fits:
+            optima.refine(way)
             break
     return optima, way + 1
 
