@@ -17,8 +17,7 @@ optimum, with a new stretch of V each, tell whether there is a better one.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -62,81 +61,92 @@ def optima_of_whole_landscape(
     """Return the optima to which steps over lower and lower μ lead, and how many ways down."""
     some = observation.on_few_points(*MORE)
     optima = Optima(observation, some, steps, ("better", "better"))
-    for way in range(WAYS_DOWN):
-        x, is_near = _way_down(observation, some, steps, seed, way, cache)
-        optima.end_at(x, way, "optimum" if is_near else "place")
+    for number in range(WAYS_DOWN):
+        way = _Way(observation, some, steps, seed, number, cache)
+        x, explains = way.down()
+        optima.end_at(x, number, "optimum" if explains else "place")
         until = optima.starts + STARTS - 1
         while optima.fits and not optima.is_settled and optima.starts < until:
-            number = FEW[0] + BACK + optima.starts
-            rng = np.random.default_rng([seed, 2**31 + 3, way, number])
-            start = with_new_stretch(observation.unknowns, best(optima.found).answer, rng)
-            make = partial(_from_draws, observation, FEW[0], start, steps, way, rng)
-            optima.start_from(_cached(cache, f"down.{way}.{number}", make)[0], way)
+            optima.start_from(way.back(best(optima.found).answer, optima.starts), number)
         if optima.fits:
-            optima.refine(way)
+            optima.refine(number)
             break
-    return optima, way + 1
+    return optima, number + 1
 
 
-def _way_down(
-    observation: Observation, some: Observation, steps: Steps, seed: int, way: int, cache: Cache
-) -> tuple[FloatArray, bool]:
-    """Return unknowns (unknown,), and whether they explain data of all μ."""
-    prior = observation.unknowns.prior
-    draw = prior.draw(np.random.default_rng([seed, 2**31 + 3, way]), 2)[0]
-    x = prior.mean if way == 0 else draw
-    for number in range(HIGHEST, FEW[0] + BACK):
-        lines = min(number, FEW[0])
-        rng = np.random.default_rng([seed, 2**31 + 3, way, number])
-        make = partial(_from_draws, observation, lines, x, steps, way, rng)
-        x, goes_on = _cached(cache, f"down.{way}.{number}", make)
-        if not goes_on:
-            break
-        if lines == FEW[0]:
-            x = steps(some, x, way, f"down.{way}.{number}.some", (), "better").mean
-            if is_noise(_excess(some, x)):
-                return steps(observation, x, way, f"down.{way}.all", (), "better").mean, True
-    return x, False
+@dataclass(frozen=True)
+class _Way:
+    """A way from V = 0, or from a draw of the prior, over lower and lower μ.
 
-
-def _from_draws(
-    observation: Observation,
-    lines: int,
-    x: FloatArray,
-    steps: Steps,
-    way: int,
-    rng: np.random.Generator,
-) -> tuple[FloatArray, bool]:
-    """Return unknowns to which steps lead, and whether these explain a draw of so many lines.
-
-    With the lowest lines steps go on until the unknowns explain draws that no step has used.
+    Each of its parts has random numbers of its own, so that an interrupted search goes on alike.
     """
-    in_a_row = 0
-    for _ in range(DRAWS):
-        part = observation.on_random_points(lines / FEW[0], (lines, *FEW[1:]), rng)
-        if lines == FEW[0]:
-            in_a_row = in_a_row + 1 if _excess(part, x) <= FORETOLD[1] else 0
-            if in_a_row == FORETOLD[0]:
-                return x, True
-            if in_a_row > 0:
+
+    observation: Observation
+    some: Observation
+    steps: Steps
+    seed: int
+    number: int
+    cache: Cache
+
+    def down(self) -> tuple[FloatArray, bool]:
+        """Return unknowns (unknown,), and whether they explain data of all μ."""
+        prior = self.observation.unknowns.prior
+        x = prior.mean if self.number == 0 else prior.draw(self._rng(), 2)[0]
+        for part in range(HIGHEST, FEW[0] + BACK):
+            lines = min(part, FEW[0])
+            x, goes_on = self._on_draws(lines, part, x, self._rng(part))
+            if not goes_on:
+                break
+            if lines == FEW[0]:
+                x = self._better(self.some, x, f"{part}.some")
+                if is_noise(_excess(self.some, x)):
+                    return self._better(self.observation, x, "all"), True
+        return x, False
+
+    def back(self, answer: Gaussian, start: int) -> FloatArray:
+        """Return unknowns that explain draws of data again, after a change of an answer."""
+        part = FEW[0] + BACK + start
+        rng = self._rng(part)
+        x = with_new_stretch(self.observation.unknowns, answer, rng)
+        return self._on_draws(FEW[0], part, x, rng)[0]
+
+    def _on_draws(
+        self, lines: int, part: int, x: FloatArray, rng: np.random.Generator
+    ) -> tuple[FloatArray, bool]:
+        """Return where steps with draws of so many lines end, and whether to go on from there."""
+
+        def calculate() -> dict[str, Any]:
+            end, goes_on = self._explain_draws(lines, x, rng)
+            return {"x": end.tolist(), "goes_on": goes_on}
+
+        found = self.cache(f"down.{self.number}.{part}", calculate)
+        return np.array(found["x"]), found["goes_on"]
+
+    def _explain_draws(
+        self, lines: int, x: FloatArray, rng: np.random.Generator
+    ) -> tuple[FloatArray, bool]:
+        """Do as `_on_draws`: until one is explained, or, of all lines, what no step has used."""
+        in_a_row, foretold = FORETOLD
+        left = in_a_row
+        for _ in range(DRAWS):
+            part = self.observation.on_random_points(lines / FEW[0], (lines, *FEW[1:]), rng)
+            if lines == FEW[0] and _excess(part, x) <= foretold:
+                left -= 1
+                if left == 0:
+                    return x, True
                 continue
-        x = steps(part, x, way, None, (), "better").mean
-        if lines < FEW[0] and is_noise(_excess(part, x)):
-            return x, True
-    return x, lines == FEW[0]
+            left = in_a_row
+            x = self._better(part, x, None)
+            if lines < FEW[0] and is_noise(_excess(part, x)):
+                return x, True
+        return x, lines == FEW[0]
 
+    def _better(self, part: Observation, x: FloatArray, name: str | None) -> FloatArray:
+        full = None if name is None else f"down.{self.number}.{name}"
+        return self.steps(part, x, self.number, full, (), "better").mean
 
-def _cached(
-    cache: Cache, name: str, make: Callable[[], tuple[FloatArray, bool]]
-) -> tuple[FloatArray, bool]:
-    """Return what `_from_draws` does, from the file or made now."""
-
-    def calculate() -> dict[str, Any]:
-        x, goes_on = make()
-        return {"x": x.tolist(), "goes_on": goes_on}
-
-    found = cache(name, calculate)
-    return np.array(found["x"]), found["goes_on"]
+    def _rng(self, *part: int) -> np.random.Generator:
+        return np.random.default_rng([self.seed, 2**31 + 3, self.number, *part])
 
 
 def _excess(observation: Observation, x: FloatArray) -> float:
