@@ -26,9 +26,9 @@ WIRES_PER_UNKNOWN = 12, 35
 """How many times all data of a wire are simulated for each unknown: where an answer that fits is
 surely right, and otherwise. Means of inversions of 5+1 and ten components with noise of 0.001 and
 of 0.01 e²/h; single ones take a third to twice that. With 0.05 e²/h they take twice that, too."""
-WIRES_OF_LANDSCAPE = 2500
-"""The same of a whole landscape, however many unknowns it has (one wire of 300 sites); as many
-again for each time that its search has to begin anew."""
+WIRES_OF_LANDSCAPE = 600
+"""The same of a whole landscape, however many unknowns it has, where disorder is weak or the wire
+is short; four times that where it is neither, and more if the search has to begin anew."""
 
 
 def announce_inference(observation: Observation) -> None:
