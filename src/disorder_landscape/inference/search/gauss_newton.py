@@ -158,7 +158,10 @@ def precision_of(observation: Observation, slope: FloatArray) -> FloatArray:
 def linearise(
     observation: Observation, x: FloatArray, roughly: bool = False
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the data of x (unknown,), shape (datum,), and their slopes (unknown, datum)."""
+    """Return the data of x (unknown,), shape (datum,), and their slopes (unknown, datum).
+
+    Roughly, or as steps to an optimum itself need them: DOUBT.
+    """
     exact = observation.exact_slopes(x)
     if exact is None:
         return _differences(observation, x)

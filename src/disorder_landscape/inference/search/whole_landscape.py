@@ -17,7 +17,9 @@ optimum, with a new stretch of V each, tell whether there is a better one.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -92,54 +94,64 @@ class _Way:
         """Return unknowns (unknown,), and whether they explain data of all μ."""
         prior = self.observation.unknowns.prior
         x = prior.mean if self.number == 0 else prior.draw(self._rng(), 2)[0]
-        for part in range(HIGHEST, FEW[0] + BACK):
-            lines = min(part, FEW[0])
-            x, goes_on = self._on_draws(lines, part, x, self._rng(part))
-            if not goes_on:
-                break
-            if lines == FEW[0]:
-                x = self._better(self.some, x, f"{part}.some")
-                if is_noise(_excess(self.some, x)):
-                    return self._better(self.observation, x, "all"), True
+        for lines in range(HIGHEST, FEW[0]):
+            x, explains = self._cached(lines, partial(self._explain, lines, x, self._rng(lines)))
+            if not explains:
+                return x, False
+        for part in range(FEW[0], FEW[0] + BACK):
+            x, _ = self._cached(part, partial(self._foretell, x, self._rng(part)))
+            x = self._better(self.some, x, f"{part}.some")
+            if is_noise(_excess(self.some, x)):
+                return self._better(self.observation, x, "all"), True
         return x, False
 
     def back(self, answer: Gaussian, start: int) -> FloatArray:
-        """Return unknowns that explain draws of data again, after a change of an answer."""
+        """Return unknowns that foretell draws of data again, after a change of an answer."""
         part = FEW[0] + BACK + start
         rng = self._rng(part)
         x = with_new_stretch(self.observation.unknowns, answer, rng)
-        return self._on_draws(FEW[0], part, x, rng)[0]
+        return self._cached(part, partial(self._foretell, x, rng))[0]
 
-    def _on_draws(
-        self, lines: int, part: int, x: FloatArray, rng: np.random.Generator
-    ) -> tuple[FloatArray, bool]:
-        """Return where steps with draws of so many lines end, and whether to go on from there."""
-
-        def calculate() -> dict[str, Any]:
-            end, goes_on = self._explain_draws(lines, x, rng)
-            return {"x": end.tolist(), "goes_on": goes_on}
-
-        found = self.cache(f"down.{self.number}.{part}", calculate)
-        return np.array(found["x"]), found["goes_on"]
-
-    def _explain_draws(
+    def _explain(
         self, lines: int, x: FloatArray, rng: np.random.Generator
     ) -> tuple[FloatArray, bool]:
-        """Do as `_on_draws`: until one is explained, or, of all lines, what no step has used."""
+        """Take steps with draws of so many lines until they explain one; whether they do."""
+        for _ in range(DRAWS):
+            part = self._draw(lines, rng)
+            x = self._better(part, x, None)
+            if is_noise(_excess(part, x)):
+                return x, True
+        return x, False
+
+    def _foretell(self, x: FloatArray, rng: np.random.Generator) -> tuple[FloatArray, bool]:
+        """Take steps with draws of all lines until some need none; whether they do."""
         in_a_row, foretold = FORETOLD
         left = in_a_row
         for _ in range(DRAWS):
-            part = self.observation.on_random_points(lines / FEW[0], (lines, *FEW[1:]), rng)
-            if lines == FEW[0] and _excess(part, x) <= foretold:
-                left -= 1
-                if left == 0:
-                    return x, True
+            part = self._draw(FEW[0], rng)
+            if _excess(part, x) > foretold:
+                left = in_a_row
+                x = self._better(part, x, None)
                 continue
-            left = in_a_row
-            x = self._better(part, x, None)
-            if lines < FEW[0] and is_noise(_excess(part, x)):
+            left -= 1
+            if left == 0:
                 return x, True
-        return x, lines == FEW[0]
+        return x, False
+
+    def _draw(self, lines: int, rng: np.random.Generator) -> Observation:
+        return self.observation.on_random_points(lines / FEW[0], (lines, *FEW[1:]), rng)
+
+    def _cached(
+        self, part: int, find: Callable[[], tuple[FloatArray, bool]]
+    ) -> tuple[FloatArray, bool]:
+        """Return what explains a part, and whether it does, from the file or found now."""
+
+        def calculate() -> dict[str, Any]:
+            x, explains = find()
+            return {"x": x.tolist(), "explains": explains}
+
+        found = self.cache(f"down.{self.number}.{part}", calculate)
+        return np.array(found["x"]), found["explains"]
 
     def _better(self, part: Observation, x: FloatArray, name: str | None) -> FloatArray:
         full = None if name is None else f"down.{self.number}.{name}"
