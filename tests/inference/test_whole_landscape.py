@@ -14,12 +14,15 @@ from disorder_landscape.inference.problem.observation import Observation, noise_
 from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.search.whole_landscape import (
+    BACK,
     DRAWN_ANEW,
     DRAWS,
     FEW,
-    HIGHEST,
+    FORETOLD,
+    LINES,
     STARTS,
     WAYS_DOWN,
+    _in_fields,
     optima_of_whole_landscape,
     with_new_stretch,
 )
@@ -103,6 +106,9 @@ def test_a_new_stretch_leaves_the_rest():
 class Whole(Linear):
     """Linear data of a whole landscape, all of them in each part."""
 
+    def at(self, mu, B, bias):
+        return replace(self)
+
     def on_few_points(self, *counts):
         return replace(self)
 
@@ -112,8 +118,10 @@ class Whole(Linear):
 
 @pytest.fixture
 def whole():
-    slope = np.random.default_rng(0).normal(size=(len(UNKNOWNS.names), DATA))
-    return Whole(np.zeros(DATA), slope, unknowns=UNKNOWNS, measurement=NOTHING)
+    rng = np.random.default_rng(0)
+    slope = rng.normal(size=(len(UNKNOWNS.names), DATA))
+    truth = rng.normal(size=len(UNKNOWNS.names))
+    return Whole(truth @ slope, slope, unknowns=UNKNOWNS, measurement=NOTHING)
 
 
 @pytest.fixture
@@ -123,11 +131,11 @@ def far(whole):
     return Gaussian(30 + exact.mean, 1e-4 * np.eye(exact.mean.size))
 
 
-DEPTHS = FEW[0] - HIGHEST
-"""Before the last one."""
+DRAW = (None, "better")
+"""Steps with a draw of data have no name, and need not end at an optimum."""
 
 
-def test_steps_use_lower_and_lower_mu_until_starts_agree(whole):
+def test_steps_go_from_few_data_to_all_until_starts_agree(whole):
     exact, asked = posterior(whole), []
 
     def steps(of, x, attempt, name, known, goal):
@@ -135,20 +143,19 @@ def test_steps_use_lower_and_lower_mu_until_starts_agree(whole):
         return exact
 
     optima, ways = optima_of_whole_landscape(whole, steps, 0)
-    on_draws = (None, "better")
+    end = LINES.stop
     assert asked == [
-        *[on_draws] * DEPTHS,
-        *[("down.0.24.some", "better"), ("down.0.all", "better"), ("0.0", "optimum")],
-        *[on_draws, ("0.1.some", "better"), ("0.1", "better")],
-        *[on_draws, ("0.2.some", "better"), ("best", "optimum")],
+        *[DRAW, (f"down.0.{end}.some", "better"), ("down.0.all", "better"), ("0.0", "optimum")],
+        *[DRAW, ("0.1.some", "better"), ("0.1", "better")],
+        *[DRAW, ("0.2.some", "better"), ("best", "optimum")],
     ]
     assert ways == 1
     assert optima.is_settled
     assert optima.found[0].found_by == (0, 0, 0)
 
 
-def test_data_are_drawn_until_they_are_explained(whole, far, monkeypatch):
-    """… of the last lines, until two draws are before any step."""
+def test_lower_mu_follow_when_draws_are_foretold(whole, far, monkeypatch):
+    """Draws go on until some in a row are explained before any step."""
     lines, ends = [], [far, far]
 
     def of(self, highest, counts, rng):
@@ -160,12 +167,22 @@ def test_data_are_drawn_until_they_are_explained(whole, far, monkeypatch):
 
     monkeypatch.setattr(Whole, "on_random_points", of)
     optima_of_whole_landscape(whole, steps, 0)
-    counts = [HIGHEST] * 2 + list(range(HIGHEST, FEW[0])) + [FEW[0]] * 2
+    counts = [LINES[0]] * 3 + [count for count in LINES for _ in range(FORETOLD[0])]
     assert lines[: len(counts)] == [(count / FEW[0], count) for count in counts]
 
 
+def test_draws_are_of_fields_other_than_zero(whole):
+    G = np.zeros_like(NOTHING.G)
+    G[:, 2] = np.nan
+    both = Observation(replace(NOTHING, G=G), UNKNOWNS, np.ones(4))
+    np.testing.assert_array_equal(_in_fields(both).measurement.B, B[1:])
+    G[:, 1] = np.nan
+    alone = Observation(replace(NOTHING, G=G), UNKNOWNS, np.ones(4))
+    assert _in_fields(alone) is alone
+
+
 def test_other_ways_down_are_tried_from_draws_of_the_prior(whole, far):
-    """Where no draw of data leads to an answer, a way ends with all data."""
+    """Where no draw of data is foretold, a way ends with all data."""
     begun, names = [], []
 
     def steps(of, x, attempt, name, known, goal):
@@ -178,31 +195,42 @@ def test_other_ways_down_are_tried_from_draws_of_the_prior(whole, far):
     optima, ways = optima_of_whole_landscape(whole, steps, 0)
     assert ways == WAYS_DOWN == len(begun)
     assert [name for name in names if name] == [f"{way}.{way}" for way in range(WAYS_DOWN)]
-    assert names.count(None) == DRAWS * WAYS_DOWN
+    assert names.count(None) == DRAWS * len(LINES) * WAYS_DOWN
     assert not begun[0].any()
     assert abs(begun[1] - begun[2]).max() > 1
     assert not optima.fits
 
 
-def test_an_interrupted_search_goes_on_with_the_next_lines(whole):
-    """Each depth has draws of its own."""
-    exact, kept, begun = posterior(whole), Checkpoint(), []
+def test_steps_go_back_to_draws_where_more_data_are_not_explained(whole, far):
+    begun = []
+
+    def steps(of, x, attempt, name, known, goal):
+        begun.append(name)
+        return far if name is not None else posterior(whole)
+
+    optima_of_whole_landscape(whole, steps, 0)
+    more = [f"down.0.{LINES.stop + part}.some" for part in range(BACK)]
+    assert [name for name in begun if name and name.startswith("down.0")] == more
+
+
+def test_an_interrupted_search_goes_on_with_the_next_lines(whole, far):
+    """Each number of lines has draws of its own."""
+    kept, begun = Checkpoint(), []
 
     def steps(of, x, attempt, name, known, goal):
         begun.append(x)
         if len(begun) == interrupted:
             raise KeyboardInterrupt
-        return Gaussian(exact.mean + 1e-6 * len(begun), exact.covariance)
+        return Gaussian(far.mean + len(begun), far.covariance)
 
-    interrupted = 7
+    interrupted = 3 * DRAWS + 1
     with pytest.raises(KeyboardInterrupt):
         optima_of_whole_landscape(whole, steps, 0, kept.cached)
-    assert len(kept) == interrupted - 1
+    assert len(kept) == 3
     last, interrupted = begun[-1], 0
     begun.clear()
     optima_of_whole_landscape(whole, steps, 0, kept.cached)
     np.testing.assert_array_equal(begun[0], last)
-    assert len(kept) == DEPTHS + 3  # the last lines, and two more starts
 
 
 def test_starts_that_do_not_agree_end(whole, far):

@@ -7,8 +7,9 @@ steps take the lines of the highest μ first, and add lower and lower ones.
 Few data have fewer minima than many. And at a minimum of some data that is not near the true V,
 other data seldom have one. So steps go on and on with other data: few points of μ, B and bias,
 drawn anew whenever steps have come to an end (as stochastic gradients do: Robbins and Monro, Ann.
-Math. Stat. 22, 400 (1951)). V becomes right from both ends inwards, as electrons of low μ do not
-reach further. It is found where it explains data that no step has used.
+Math. Stat. 22, 400 (1951)). They take lower μ only when V foretells draws: explains data that no
+step has used. (Where they went on as soon as V explained a draw that steps had used, one wire of
+three was lost.) Draws are of fields other than B = 0, where slopes in closed form often fail.
 
 With all data steps must go to the optimum itself: valleys bend, and steps that are content with
 less end some 50 µeV away, where the noise explains the data all but as well. Starts about that
@@ -17,7 +18,6 @@ optimum, with a new stretch of V each, tell whether there is a better one.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -36,16 +36,16 @@ FEW = 24, 5, 7
 """Points of μ, B and bias, drawn anew each time, at most, …"""
 MORE = 48, 5, 11
 """… and of the data that follow before all."""
-HIGHEST = 4
-"""A way down begins with so many lines of the highest μ."""
+LINES = range(6, FEW[0] + 1, 2)
+"""A way down takes so many lines of the highest μ, one number after the other."""
 WAYS_DOWN = 5
 """At most. The first is from the middle of the prior, the others from draws."""
-DRAWS = 30
-"""A way ends where so many draws of data have not led to a V that explains one of them."""
+DRAWS = 40
+"""Steps take lower μ, or a way ends with the lowest, where so many draws have not been enough."""
 FORETOLD = 2, 5.0
-"""With the lowest lines steps go on until V explains so many draws in a row before steps use them.
-χ² may be so many of its standard deviations above its mean: of 3,360 data it is two if all is well,
-since V is only as near as the draw before lets it be."""
+"""Steps go on until V explains so many draws in a row before steps use them. χ² may be so many of
+its standard deviations above its mean: of 3,360 data it is two if all is well, since V is only as
+near as the draw before lets it be."""
 BACK = 5
 """Where more data are not explained then, steps go back to draws, at most so many times."""
 STRETCH = 8.0, 35.0
@@ -61,10 +61,10 @@ def optima_of_whole_landscape(
     observation: Observation, steps: Steps, seed: int, cache: Cache = uncached
 ) -> tuple[Optima, int]:
     """Return the optima to which steps over lower and lower μ lead, and how many ways down."""
-    some = observation.on_few_points(*MORE)
+    some, drawn_from = observation.on_few_points(*MORE), _in_fields(observation)
     optima = Optima(observation, some, steps, ("better", "better"))
     for number in range(WAYS_DOWN):
-        way = _Way(observation, some, steps, seed, number, cache)
+        way = _Way(observation, some, drawn_from, steps, seed, number, cache)
         x, explains = way.down()
         optima.end_at(x, number, "optimum" if explains else "place")
         until = optima.starts + STARTS - 1
@@ -85,6 +85,7 @@ class _Way:
 
     observation: Observation
     some: Observation
+    drawn_from: Observation
     steps: Steps
     seed: int
     number: int
@@ -94,64 +95,48 @@ class _Way:
         """Return unknowns (unknown,), and whether they explain data of all μ."""
         prior = self.observation.unknowns.prior
         x = prior.mean if self.number == 0 else prior.draw(self._rng(), 2)[0]
-        for lines in range(HIGHEST, FEW[0]):
-            x, explains = self._cached(lines, partial(self._explain, lines, x, self._rng(lines)))
-            if not explains:
-                return x, False
-        for part in range(FEW[0], FEW[0] + BACK):
-            x, _ = self._cached(part, partial(self._foretell, x, self._rng(part)))
+        for lines in LINES:
+            x, foretells = self._foretell(lines, x, lines)
+        for part in range(LINES.stop, LINES.stop + BACK):
+            if not foretells:
+                break
             x = self._better(self.some, x, f"{part}.some")
             if is_noise(_excess(self.some, x)):
                 return self._better(self.observation, x, "all"), True
+            x, foretells = self._foretell(LINES[-1], x, part)
         return x, False
 
     def back(self, answer: Gaussian, start: int) -> FloatArray:
         """Return unknowns that foretell draws of data again, after a change of an answer."""
-        part = FEW[0] + BACK + start
-        rng = self._rng(part)
-        x = with_new_stretch(self.observation.unknowns, answer, rng)
-        return self._cached(part, partial(self._foretell, x, rng))[0]
+        part = LINES.stop + BACK + start
+        x = with_new_stretch(self.observation.unknowns, answer, self._rng(part, 1))
+        return self._foretell(LINES[-1], x, part)[0]
 
-    def _explain(
+    def _foretell(self, lines: int, x: FloatArray, part: int) -> tuple[FloatArray, bool]:
+        """Take steps with draws of so many lines until some need none; whether they do."""
+        find = partial(self._until_foretold, lines, x, self._rng(part))
+        found = self.cache(f"down.{self.number}.{part}", find)
+        return np.array(found["x"]), found["foretells"]
+
+    def _until_foretold(
         self, lines: int, x: FloatArray, rng: np.random.Generator
-    ) -> tuple[FloatArray, bool]:
-        """Take steps with draws of so many lines until they explain one; whether they do."""
-        for _ in range(DRAWS):
-            part = self._draw(lines, rng)
-            x = self._better(part, x, None)
-            if is_noise(_excess(part, x)):
-                return x, True
-        return x, False
-
-    def _foretell(self, x: FloatArray, rng: np.random.Generator) -> tuple[FloatArray, bool]:
-        """Take steps with draws of all lines until some need none; whether they do."""
+    ) -> dict[str, Any]:
+        """Return the unknowns `x` (unknown,), and whether they foretell draws."""
         in_a_row, foretold = FORETOLD
         left = in_a_row
         for _ in range(DRAWS):
-            part = self._draw(FEW[0], rng)
+            part = self._draw(lines, rng)
             if _excess(part, x) > foretold:
                 left = in_a_row
                 x = self._better(part, x, None)
                 continue
             left -= 1
             if left == 0:
-                return x, True
-        return x, False
+                break
+        return {"x": x.tolist(), "foretells": left == 0}
 
     def _draw(self, lines: int, rng: np.random.Generator) -> Observation:
-        return self.observation.on_random_points(lines / FEW[0], (lines, *FEW[1:]), rng)
-
-    def _cached(
-        self, part: int, find: Callable[[], tuple[FloatArray, bool]]
-    ) -> tuple[FloatArray, bool]:
-        """Return what explains a part, and whether it does, from the file or found now."""
-
-        def calculate() -> dict[str, Any]:
-            x, explains = find()
-            return {"x": x.tolist(), "explains": explains}
-
-        found = self.cache(f"down.{self.number}.{part}", calculate)
-        return np.array(found["x"]), found["explains"]
+        return self.drawn_from.on_random_points(lines / FEW[0], (lines, *FEW[1:]), rng)
 
     def _better(self, part: Observation, x: FloatArray, name: str | None) -> FloatArray:
         full = None if name is None else f"down.{self.number}.{name}"
@@ -159,6 +144,13 @@ class _Way:
 
     def _rng(self, *part: int) -> np.random.Generator:
         return np.random.default_rng([self.seed, 2**31 + 3, self.number, *part])
+
+
+def _in_fields(observation: Observation) -> Observation:
+    """Return an observation of what was measured at other fields than B = 0, if anything was."""
+    m = observation.measurement
+    some = observation.at(np.arange(m.mu.size), np.flatnonzero(m.B), np.arange(m.bias.size))
+    return some if some.data.size else observation
 
 
 def _excess(observation: Observation, x: FloatArray) -> float:
