@@ -52,12 +52,15 @@ class Optima:
     steps : callable
     goals : pair
         Of steps with that part from a start, and then with all data.
+    when_wide : pair of int
+        How many starts there are at least and at most where the posterior may have several maxima.
     """
 
     observation: Observation
     some: Observation
     steps: Steps
     goals: tuple[Goal, Goal] = ("place", "optimum")
+    when_wide: tuple[int, int] = STARTS_WHEN_WIDE
     found: list[Optimum] = field(default_factory=list)
     starts: int = 0
     _on_some: list[tuple[Optimum, int | None]] = field(default_factory=list)
@@ -82,13 +85,13 @@ class Optima:
         if not self.fits:
             return False
         needed = AGREEING[0 if is_surely_right(self.observation) else 1]
-        enough = not self.is_wide or self.starts >= STARTS_WHEN_WIDE[0]
+        enough = not self.is_wide or self.starts >= self.when_wide[0]
         return enough and len(best(self.found).found_by) >= needed and unseen(self.found) <= UNSEEN
 
     @property
     def is_exhausted(self) -> bool:
         """Whether there have been as many starts as are worth their time."""
-        return self.fits and self.is_wide and self.starts >= STARTS_WHEN_WIDE[1]
+        return self.fits and self.is_wide and self.starts >= self.when_wide[1]
 
     @property
     def is_done(self) -> bool:

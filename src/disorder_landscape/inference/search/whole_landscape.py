@@ -53,8 +53,12 @@ STRETCH = 8.0, 35.0
 largest."""
 DRAWN_ANEW = 0.3, 0.45, 0.6
 """Share of the new V in the middle of the window, root mean square; what was there has the rest."""
-STARTS = 40
-"""At most, after each way down that leads to an optimum that fits, its own end the first."""
+DRAWS_OF_START = 8
+"""As many for a start about an optimum: most need three. (One of seven took 14, and as long as all
+others and the way down together.)"""
+STARTS = 4, 40
+"""At least, and at most, after each way down that leads to an optimum that fits, its own end the
+first."""
 
 
 def optima_of_whole_landscape(
@@ -62,12 +66,12 @@ def optima_of_whole_landscape(
 ) -> tuple[Optima, int]:
     """Return the optima to which steps over lower and lower μ lead, and how many ways down."""
     some, drawn_from = observation.on_few_points(*MORE), _in_fields(observation)
-    optima = Optima(observation, some, steps, ("better", "better"))
+    optima = Optima(observation, some, steps, ("better", "better"), STARTS)
     for number in range(WAYS_DOWN):
         way = _Way(observation, some, drawn_from, steps, seed, number, cache)
         x, explains = way.down()
         optima.end_at(x, number, "optimum" if explains else "place")
-        until = optima.starts + STARTS - 1
+        until = optima.starts + STARTS[1] - 1
         while optima.fits and not optima.is_settled and optima.starts < until:
             optima.start_from(way.back(best(optima.found).answer, optima.starts), number)
         if optima.fits:
@@ -110,21 +114,23 @@ class _Way:
         """Return unknowns that foretell draws of data again, after a change of an answer."""
         part = LINES.stop + BACK + start
         x = with_new_stretch(self.observation.unknowns, answer, self._rng(part, 1))
-        return self._foretell(LINES[-1], x, part)[0]
+        return self._foretell(LINES[-1], x, part, DRAWS_OF_START)[0]
 
-    def _foretell(self, lines: int, x: FloatArray, part: int) -> tuple[FloatArray, bool]:
+    def _foretell(
+        self, lines: int, x: FloatArray, part: int, most: int = DRAWS
+    ) -> tuple[FloatArray, bool]:
         """Take steps with draws of so many lines until some need none; whether they do."""
-        find = partial(self._until_foretold, lines, x, self._rng(part))
+        find = partial(self._until_foretold, lines, x, most, self._rng(part))
         found = self.cache(f"down.{self.number}.{part}", find)
         return np.array(found["x"]), found["foretells"]
 
     def _until_foretold(
-        self, lines: int, x: FloatArray, rng: np.random.Generator
+        self, lines: int, x: FloatArray, most: int, rng: np.random.Generator
     ) -> dict[str, Any]:
         """Return the unknowns `x` (unknown,), and whether they foretell draws."""
         in_a_row, foretold = FORETOLD
         left = in_a_row
-        for _ in range(DRAWS):
+        for _ in range(most):
             part = self._draw(lines, rng)
             if _excess(part, x) > foretold:
                 left = in_a_row
