@@ -12,8 +12,8 @@ step has used. (Where they went on as soon as V explained a draw that steps had 
 three was lost.) Draws are of fields other than B = 0, where slopes in closed form often fail.
 
 With all data steps must go to the optimum itself: valleys bend, and steps that are content with
-less end some 50 µeV away, where the noise explains the data all but as well. Starts about that
-optimum, with a new stretch of V each, tell whether there is a better one.
+less end some 50 µeV away, where the noise explains the data all but as well. Starts beside that
+optimum, at that of a draw each, tell whether there is a better one nearby.
 """
 
 from __future__ import annotations
@@ -25,10 +25,8 @@ from typing import Any
 import numpy as np
 
 from disorder_landscape.inference.checkpoint import Cache, uncached
-from disorder_landscape.inference.optimum import best, chi_square_excess, is_noise
-from disorder_landscape.inference.problem.gaussian import Gaussian
+from disorder_landscape.inference.optimum import Optimum, best, chi_square_excess, is_noise
 from disorder_landscape.inference.problem.observation import Observation
-from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.search.optima import Optima, Steps
 from disorder_landscape.model.parameters import FloatArray
 
@@ -48,15 +46,7 @@ its standard deviations above its mean: of 3,360 data it is two if all is well, 
 near as the draw before lets it be."""
 BACK = 5
 """Where more data are not explained then, steps go back to draws, at most so many times."""
-STRETCH = 8.0, 35.0
-"""Standard deviation of the Gaussian window in which V is drawn anew, in sites: the least and the
-largest."""
-DRAWN_ANEW = 0.3, 0.45, 0.6
-"""Share of the new V in the middle of the window, root mean square; what was there has the rest."""
-DRAWS_OF_START = 8
-"""As many for a start about an optimum: most need three. (One of seven took 14, and as long as all
-others and the way down together.)"""
-STARTS = 4, 40
+STARTS = 4, 16
 """At least, and at most, after each way down that leads to an optimum that fits, its own end the
 first."""
 
@@ -73,7 +63,7 @@ def optima_of_whole_landscape(
         optima.end_at(x, number, "optimum" if explains else "place")
         until = optima.starts + STARTS[1] - 1
         while optima.fits and not optima.is_settled and optima.starts < until:
-            optima.start_from(way.back(best(optima.found).answer, optima.starts), number)
+            optima.start_from(way.beside(best(optima.found), optima.starts), number)
         if optima.fits:
             optima.refine(number)
             break
@@ -110,27 +100,25 @@ class _Way:
             x, foretells = self._foretell(LINES[-1], x, part)
         return x, False
 
-    def back(self, answer: Gaussian, start: int) -> FloatArray:
-        """Return unknowns that foretell draws of data again, after a change of an answer."""
+    def beside(self, optimum: Optimum, start: int) -> FloatArray:
+        """Return unknowns beside an optimum: steps from it with a draw of data lead to them."""
         part = LINES.stop + BACK + start
-        x = with_new_stretch(self.observation.unknowns, answer, self._rng(part, 1))
-        return self._foretell(LINES[-1], x, part, DRAWS_OF_START)[0]
+        drawn = self._draw(LINES[-1], self._rng(part))
+        return self._better(drawn, optimum.answer.mean, str(part))
 
-    def _foretell(
-        self, lines: int, x: FloatArray, part: int, most: int = DRAWS
-    ) -> tuple[FloatArray, bool]:
+    def _foretell(self, lines: int, x: FloatArray, part: int) -> tuple[FloatArray, bool]:
         """Take steps with draws of so many lines until some need none; whether they do."""
-        find = partial(self._until_foretold, lines, x, most, self._rng(part))
+        find = partial(self._until_foretold, lines, x, self._rng(part))
         found = self.cache(f"down.{self.number}.{part}", find)
         return np.array(found["x"]), found["foretells"]
 
     def _until_foretold(
-        self, lines: int, x: FloatArray, most: int, rng: np.random.Generator
+        self, lines: int, x: FloatArray, rng: np.random.Generator
     ) -> dict[str, Any]:
         """Return the unknowns `x` (unknown,), and whether they foretell draws."""
         in_a_row, foretold = FORETOLD
         left = in_a_row
-        for _ in range(most):
+        for _ in range(DRAWS):
             part = self._draw(lines, rng)
             if _excess(part, x) > foretold:
                 left = in_a_row
@@ -162,21 +150,3 @@ def _in_fields(observation: Observation) -> Observation:
 def _excess(observation: Observation, x: FloatArray) -> float:
     """Return (χ² − its mean) / its standard deviation at x (unknown,)."""
     return chi_square_excess(observation, observation.simulate(x[None])[0])
-
-
-def with_new_stretch(unknowns: Unknowns, answer: Gaussian, rng: np.random.Generator) -> FloatArray:
-    """Return unknowns (unknown,) of which V is drawn anew about one site.
-
-    It is there the more often, the larger the error bar is. Both the old V and the new one are as
-    probable as the disorder model has it.
-    """
-    x, std = answer.mean, unknowns.potential_std(answer.covariance)
-    old, drawn = unknowns.potential(x), unknowns.potential(unknowns.prior.draw(rng, 2)[0])
-    site, width, new = (
-        rng.choice(old.size, p=std / std.sum()),
-        rng.uniform(*STRETCH),
-        rng.choice(DRAWN_ANEW),
-    )
-    window = np.exp(-(((np.arange(old.size) - site) / width) ** 2) / 2)
-    share = new * window
-    return unknowns.with_potential(x, np.sqrt(1 - share**2) * old + share * drawn)
