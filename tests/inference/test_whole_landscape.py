@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from threadpoolctl import threadpool_info, threadpool_limits
 
 import disorder_landscape as dl
 from disorder_landscape.inference.checkpoint import Checkpoint
@@ -127,6 +128,18 @@ def test_steps_go_from_few_data_to_all_until_starts_agree(whole):
     assert ways == 1
     assert optima.is_settled
     assert optima.found[0].found_by == (0, 0, 0)
+
+
+def test_linear_algebra_has_one_thread(whole):
+    """… while the simulation has all."""
+    threads = set()
+
+    def progress(step):
+        threads.update(one["num_threads"] for one in threadpool_info() if one["user_api"] == "blas")
+
+    with threadpool_limits(2, user_api="blas"):
+        invert(whole, None, progress=progress)
+    assert threads == {1}
 
 
 def test_lower_mu_follow_when_draws_are_foretold(whole, far, monkeypatch):

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from disorder_landscape.inference.checkpoint import Cache, Checkpoint, cached_gaussian
 from disorder_landscape.inference.optimum import Optimum, best
@@ -76,6 +77,9 @@ def invert(
 ) -> Outcome:
     """Return the optima of the posterior that explain the data best, and samples of it.
 
+    Linear algebra has one thread. The simulation's threads would wait for others: with two cores a
+    wire of 60 sites takes 52 s instead of 69.
+
     Parameters
     ----------
     observation : Observation
@@ -89,16 +93,19 @@ def invert(
     checkpoint : Checkpoint, optional
         What an interrupted run has found.
     """
-    cache = (checkpoint if checkpoint is not None else Checkpoint()).cached
-    steps = partial(_steps, cache, progress)
-    rounds = 0
-    if observation.unknowns.is_whole_landscape:
-        optima, attempts = optima_of_whole_landscape(observation, steps, seed, cache)
-    else:
-        found = _optima_of_few_unknowns(observation, model, steps, seed, settings, progress, cache)
-        optima, attempts, rounds = found
-    report = within(progress, attempts - 1, IMPORTANCE_SAMPLING)
-    drawn = posterior_samples(observation, optima.found, [seed, 2**31 + 2], cache, report)
+    with threadpool_limits(1, user_api="blas"):
+        cache = (checkpoint if checkpoint is not None else Checkpoint()).cached
+        steps = partial(_steps, cache, progress)
+        rounds = 0
+        if observation.unknowns.is_whole_landscape:
+            optima, attempts = optima_of_whole_landscape(observation, steps, seed, cache)
+        else:
+            found = _optima_of_few_unknowns(
+                observation, model, steps, seed, settings, progress, cache
+            )
+            optima, attempts, rounds = found
+        report = within(progress, attempts - 1, IMPORTANCE_SAMPLING)
+        drawn = posterior_samples(observation, optima.found, [seed, 2**31 + 2], cache, report)
     return Outcome(optima.found, drawn, attempts, rounds)
 
 
