@@ -265,21 +265,19 @@ class Unknowns:
         potential: FloatArray,
         parameters: Mapping[str, float],
     ) -> FloatArray:
-        """Return the unknowns of a device that is known, shape (unknown,)."""
+        """Return the unknowns of a device that is known, shape (unknown,).
+
+        Of a whole landscape those of the potential that is nearest to its own.
+        """
         unknown = {name: x for name, x in parameters.items() if name in self.parameters}
         if not self.is_whole_landscape:
             named = {f"c_{n}": c for n, c in enumerate(components, start=1)}
             return self.vector({**named, "mean": float(potential.mean()), **unknown})
-        x = self.with_potential(np.zeros(len(self.names)), potential)
+        x = np.zeros(len(self.names))
+        x[: self.of_disorder] = np.linalg.lstsq(self.to_potential, potential, rcond=None)[0]
         for name, value in unknown.items():
             x[self.names.index(name)] = self.parameters[name].standard(value)
         return x
-
-    def with_potential(self, x: FloatArray, potential: FloatArray) -> FloatArray:
-        """Return unknowns with those of the potential that is nearest to one, shape (unknown,)."""
-        changed = x.copy()
-        changed[: self.of_disorder] = np.linalg.lstsq(self.to_potential, potential, rcond=None)[0]
-        return changed
 
 
 def unknowns_of(config: DatasetConfig) -> Unknowns:
