@@ -287,6 +287,19 @@ def test_narrow_answers_get_importance_samples_if_much_of_a_device_is_unknown(li
     assert UNKNOWNS.site_std(found.moments.covariance) == pytest.approx(bar, rel=0.15)
 
 
+def test_many_unknowns_get_none(lines, monkeypatch):
+    """… or too few, where there are several optima."""
+    exact = posterior(lines)
+    narrow = optimum_at(lines, Gaussian(exact.mean, 0.5 * exact.covariance))
+    wide = replace(lines, measurement=Measured(UNKNOWNS.site_std(exact.covariance) / BOLTZMANN))
+    assert posterior_samples(wide, [narrow], [0]) is not None
+    monkeypatch.setattr(samples, "MOST_UNKNOWNS", len(UNKNOWNS.names) - 1)
+    assert posterior_samples(wide, [narrow], [0]) is None
+    found = posterior_samples(wide, [narrow, narrow], [0])
+    assert len(found.samples) < FIRST_BATCH + 4
+    assert not found.is_enough
+
+
 def test_several_optima_get_importance_samples(lines):
     """However narrow they are."""
     exact = posterior(lines)
