@@ -202,6 +202,7 @@ def test_seeds_make_an_interval():
     assert found.interval == pytest.approx((2 - 4.303 / np.sqrt(3), 2 + 4.303 / np.sqrt(3)), 1e-3)
     assert mean_over_seeds([1.0, 2.0]).interval is None
     assert found.scaled(2.0).interval == pytest.approx(2 * np.array(found.interval))
+    assert found.from_one().interval == pytest.approx(1 - np.array(found.interval)[::-1])
 
 
 @pytest.mark.parametrize(
@@ -274,6 +275,7 @@ def test_the_first_value_that_is_there_decides_and_each_has_its_verdict(study):
         ({"where": {}, "reduce": "mean"}, 0.93),
         ({"where": {}, "reduce": "min"}, 0.9),
         ({"where": {"n": "10"}, "times": 2}, 1.8),
+        ({"where": {"n": "10"}, "times": 0.5, "from_one": True}, 0.55),
         ({"minus": {"n": 10}}, 0.06),
         ({"where": {}, "column": None, "file": "results/study.json", "key": "fit/R2"}, 0.97),
     ],

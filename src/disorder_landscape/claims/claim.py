@@ -48,11 +48,13 @@ class Stored(_Table):
     column: str | None = None
     """CSV: the column of the value."""
     reduce: Literal["only", "mean", "median", "min", "max", "sum"] = "only"
-    """CSV: what becomes of several rows; "only" allows one, "mean" takes those of other seeds."""
+    """CSV: what becomes of several rows; "only" allows one, "mean" takes seeds, or wires."""
     derive: str | None = None
     """A study's table: the name of a function of `claims.derived`."""
     times: float = 1.0
     """A factor, such as 2 where an error is compared as two standard deviations."""
+    from_one: bool = False
+    """Whether it is subtracted from one then, so that a scaled square error becomes R²."""
 
     @model_validator(mode="after")
     def _one_of_three(self) -> Stored:

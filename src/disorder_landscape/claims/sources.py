@@ -62,7 +62,8 @@ def stored_value(claim: Claim, source: Stored | Measured, root: Path = REPOSITOR
         must = f"name one of {', '.join(DERIVED)}"
         require(source.derive in DERIVED, "derive", must, f"it is '{source.derive}'")
         value = DERIVED[str(source.derive)](path)
-    return value.scaled(source.times)
+    scaled = value.scaled(source.times)
+    return scaled.from_one() if source.from_one else scaled
 
 
 def provenance(claim: Claim, source: Stored | Measured, root: Path = REPOSITORY) -> dict[str, Any]:

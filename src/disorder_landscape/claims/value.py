@@ -29,9 +29,14 @@ class Value:
         interval = self.interval and (factor * self.interval[0], factor * self.interval[1])
         return Value(factor * self.value, interval)
 
+    def from_one(self) -> Value:
+        """Return it subtracted from one."""
+        interval = self.interval and (1 - self.interval[1], 1 - self.interval[0])
+        return Value(1 - self.value, interval)
+
 
 def mean_over_seeds(values: Sequence[float]) -> Value:
-    """Return the mean of trainings that differ in their seed, with Student's interval."""
+    """Return the mean over trainings of other seeds, or over wires, with Student's interval."""
     mean = fmean(values)
     if len(values) < FEWEST_SEEDS:
         return Value(mean)
