@@ -113,8 +113,12 @@ def coverage(table: pd.DataFrame) -> FloatArray:
 
 
 def joint_coverage(table: pd.DataFrame) -> FloatArray:
-    """Return which part of the truths the most probable COVERAGE of the posteriors hold."""
-    return np.array([(table["more_probable"] < part).mean() for part in COVERAGE])
+    """Return which part of the truths the most probable COVERAGE of the posteriors hold.
+
+    Of posteriors that have samples enough to tell.
+    """
+    more_probable = table["more_probable"].dropna()
+    return np.array([(more_probable < part).mean() for part in COVERAGE])
 
 
 def calibration(table: pd.DataFrame) -> dict[str, object]:
@@ -127,7 +131,7 @@ def calibration(table: pd.DataFrame) -> dict[str, object]:
         one: dict[str, object] = {"wires": len(some)}
         for which, quantiles, parts in (
             ("", norm.cdf(z_scores(some)), coverage(some)),
-            ("joint_", some["more_probable"], joint_coverage(some)),
+            ("joint_", some["more_probable"].dropna(), joint_coverage(some)),
         ):
             inside = dict(zip(map(str, COVERAGE), parts.round(4).tolist(), strict=True))
             one[f"{which}p"] = round(float(kstest(quantiles, "uniform").pvalue), 4)
