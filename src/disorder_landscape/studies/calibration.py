@@ -106,6 +106,11 @@ def z_scores(table: pd.DataFrame) -> FloatArray:
     return np.concatenate([np.array(text.split(), dtype=float) for text in table["z_scores"]])
 
 
+def more_probable(table: pd.DataFrame) -> FloatArray:
+    """Return how much of each posterior is more probable than its truth, if its samples tell."""
+    return np.asarray(table["more_probable"].dropna())
+
+
 def coverage(table: pd.DataFrame) -> FloatArray:
     """Return which part of the truths the central intervals of COVERAGE hold."""
     z = abs(z_scores(table))
@@ -113,12 +118,9 @@ def coverage(table: pd.DataFrame) -> FloatArray:
 
 
 def joint_coverage(table: pd.DataFrame) -> FloatArray:
-    """Return which part of the truths the most probable COVERAGE of the posteriors hold.
-
-    Of posteriors that have samples enough to tell.
-    """
-    more_probable = table["more_probable"].dropna()
-    return np.array([(more_probable < part).mean() for part in COVERAGE])
+    """Return which part of the truths the most probable COVERAGE of the posteriors hold."""
+    quantiles = more_probable(table)
+    return np.array([(quantiles < part).mean() for part in COVERAGE])
 
 
 def calibration(table: pd.DataFrame) -> dict[str, object]:
@@ -131,7 +133,7 @@ def calibration(table: pd.DataFrame) -> dict[str, object]:
         one: dict[str, object] = {"wires": len(some)}
         for which, quantiles, parts in (
             ("", norm.cdf(z_scores(some)), coverage(some)),
-            ("joint_", some["more_probable"].dropna(), joint_coverage(some)),
+            ("joint_", more_probable(some), joint_coverage(some)),
         ):
             inside = dict(zip(map(str, COVERAGE), parts.round(4).tolist(), strict=True))
             one[f"{which}p"] = round(float(kstest(quantiles, "uniform").pvalue), 4)
