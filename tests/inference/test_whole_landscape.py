@@ -15,6 +15,7 @@ from disorder_landscape.inference.problem.observation import Observation, noise_
 from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.search.whole_landscape import (
+    AGAIN,
     BACK,
     DRAWS,
     FEW,
@@ -107,11 +108,8 @@ def far(whole):
     return Gaussian(30 + exact.mean, 1e-4 * np.eye(exact.mean.size))
 
 
-DRAW = (None, "better")
-"""Steps with a draw of data have no name, and need not end at an optimum."""
-
-
-def test_steps_go_from_few_data_to_all_until_starts_agree(whole):
+def test_steps_go_from_few_data_to_all_until_ways_agree(whole):
+    """Steps with a draw of data have no name, and need not end at an optimum."""
     exact, asked = posterior(whole), []
 
     def steps(of, x, attempt, name, known, goal):
@@ -119,15 +117,14 @@ def test_steps_go_from_few_data_to_all_until_starts_agree(whole):
         return exact
 
     optima, ways = optima_of_whole_landscape(whole, steps, 0)
-    end, start = LINES.stop, LINES.stop + BACK
-    assert asked == [
-        *[DRAW, (f"down.0.{end}.some", "better"), ("down.0.all", "better"), ("0.0", "optimum")],
-        *[(f"down.0.{start + 1}", "better"), ("0.1.some", "better"), ("0.1", "better")],
-        *[(f"down.0.{start + 2}", "better"), ("0.2.some", "better"), ("best", "optimum")],
-    ]
+    expected = []
+    for start, way in enumerate(["way.0", *(f"way.0.{k}" for k in range(1, STARTS[0]))]):
+        expected += [(None, "better"), (f"{way}.{LINES.stop}.some", "better")]
+        expected += [(f"0.{start}.some", "optimum")] + [("0.0", "optimum")] * (start == 0)
+    assert asked == expected
     assert ways == 1
     assert optima.is_settled
-    assert optima.found[0].found_by == (0, 0, 0)
+    assert optima.found[0].found_by == (0,) * STARTS[0]
 
 
 def test_linear_algebra_has_one_thread(whole):
@@ -197,8 +194,8 @@ def test_steps_go_back_to_draws_where_more_data_are_not_explained(whole, far):
         return far if name is not None else posterior(whole)
 
     optima_of_whole_landscape(whole, steps, 0)
-    more = [f"down.0.{LINES.stop + part}.some" for part in range(BACK)]
-    assert [name for name in begun if name and name.startswith("down.0")] == more
+    more = [f"way.0.{LINES.stop + part}.some" for part in range(BACK)]
+    assert [name for name in begun if name and name.startswith("way.0")] == more
 
 
 def test_an_interrupted_search_goes_on_with_the_next_lines(whole, far):
@@ -221,11 +218,32 @@ def test_an_interrupted_search_goes_on_with_the_next_lines(whole, far):
     np.testing.assert_array_equal(begun[0], last)
 
 
-def test_starts_that_do_not_agree_end(whole, far):
+def test_ways_leave_the_best_optimum_with_few_lines_and_go_down_again(whole, monkeypatch):
+    drawn, begun = [], []
+
+    def of(self, highest, counts, rng):
+        drawn.append(counts[0])
+        return replace(self)
+
+    monkeypatch.setattr(Whole, "on_random_points", of)
     exact = posterior(whole)
 
     def steps(of, x, attempt, name, known, goal):
-        return far if name and name[0] == "0" and name != "0.0" else exact
+        if name is None:
+            begun.append((drawn[-1], x))
+        return exact
+
+    optima_of_whole_landscape(whole, steps, 0)
+    again = begun[1:]
+    assert [lines for lines, _ in again] == [AGAIN[k] for k in range(1, STARTS[0])]
+    assert all(x is exact.mean for _, x in again)
+
+
+def test_starts_that_do_not_agree_end(whole, far):
+    exact, others = posterior(whole), {f"0.{k}.some" for k in range(1, STARTS[1])}
+
+    def steps(of, x, attempt, name, known, goal):
+        return far if name in others else exact
 
     optima, ways = optima_of_whole_landscape(whole, steps, 0)
     assert ways == 1

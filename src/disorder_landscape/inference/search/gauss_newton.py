@@ -45,18 +45,13 @@ CREEPING, LATELY = 0.5, 4
 """Steps that creep end, too, where an optimum's place is asked for: if the noise does not explain
 the misfit, and −2 log(posterior) less the number of data, which is about what noise alone makes, is
 more than this part of what it was so many steps ago. (Steps that arrive halve it in one or two.)"""
-NEAR = 0.5
-"""Steps end at a known optimum if they come this near, in its standard deviations, root mean square
-over the principal axes."""
-
-BEHIND = (5, 2.0), (10, 1.2)
-"""Steps that must lead below known optima end if after so many they are still so many times as
-high. (Of 123 such steps in two wires of 300 sites 47 led below. After five, all but one of these
-were at most 1.6 times as high; after ten, at most as high.)"""
+NEAR = 1.5
+"""Steps end at a known optimum if they come this near: by so much −2 log(posterior) would be higher
+if data were linear."""
 
 Goal = Literal["optimum", "place", "better"]
 """Where steps end: at an optimum, near one (as ROUGHLY and CREEPING say), or near one, creeping or
-not, unless that will hardly be below all known ones (as BEHIND says)."""
+not."""
 
 
 def gauss_newton(
@@ -113,8 +108,6 @@ def gauss_newton(
         heights.append(best)
         if gained < (ROUGHLY if roughly else ENOUGH):
             break
-        if goal == "better" and _is_behind(heights, known):
-            break
         if goal == "place" and _creep(observation, heights, y):
             break
         for one in known:
@@ -132,15 +125,9 @@ def _creep(observation: Observation, heights: Sequence[float], y: FloatArray) ->
     return heights[-1] - y.size > CREEPING * (heights[-1 - LATELY] - y.size)
 
 
-def _is_behind(heights: Sequence[float], known: Sequence[Optimum]) -> bool:
-    """Return whether steps through these values of −2 log(posterior) are far above known ones."""
-    least = min((one.objective for one in known), default=np.inf)
-    return any(len(heights) > steps and heights[-1] > times * least for steps, times in BEHIND)
-
-
 def is_near(optimum: Optimum, x: FloatArray) -> bool:
     """Return whether steps at x (unknown,) may end at this optimum."""
-    return bool(optimum.answer.squared_distance(x) < NEAR**2 * x.size)
+    return bool(optimum.answer.squared_distance(x) < NEAR)
 
 
 def laplace(observation: Observation, mean: FloatArray, slope: FloatArray) -> Gaussian:

@@ -11,14 +11,15 @@ Math. Stat. 22, 400 (1951)). They take lower μ only when V foretells draws: exp
 step has used. (Where they went on as soon as V explained a draw that steps had used, one wire of
 three was lost.) Draws are of fields other than B = 0, where slopes in closed form often fail.
 
-With all data steps must go to the optimum itself: valleys bend, and steps that are content with
-less end some 50 µeV away, where the noise explains the data all but as well. Starts beside that
-optimum, at that of a draw each, tell whether there is a better one nearby.
+At last steps must go to the optimum itself: valleys bend, and steps that are content with less end
+some 50 µeV away, where the noise explains the data all but as well. There are other optima near it
+where it does so, too. So steps with a draw of fewer lines leave the best one, and go down from
+there once more, until enough of these ways have come back to it.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -46,9 +47,10 @@ its standard deviations above its mean: of 3,360 data it is two if all is well, 
 near as the draw before lets it be."""
 BACK = 5
 """Where more data are not explained then, steps go back to draws, at most so many times."""
-STARTS = 4, 16
-"""At least, and at most, after each way down that leads to an optimum that fits, its own end the
-first."""
+AGAIN = range(12, 20, 2)
+"""Ways that leave the best optimum begin with so many lines, by turns."""
+STARTS = 3, 8
+"""At least, and at most: a way down that leads to an optimum that fits, and those that leave it."""
 
 
 def optima_of_whole_landscape(
@@ -56,23 +58,26 @@ def optima_of_whole_landscape(
 ) -> tuple[Optima, int]:
     """Return the optima to which steps over lower and lower μ lead, and how many ways down."""
     some, drawn_from = observation.on_few_points(*MORE), _in_fields(observation)
-    optima = Optima(observation, some, steps, ("better", "better"), STARTS)
+    optima = Optima(observation, some, steps, ("optimum", "optimum"), STARTS)
     for number in range(WAYS_DOWN):
-        way = _Way(observation, some, drawn_from, steps, seed, number, cache)
+        way = _Way(observation, some, drawn_from, steps, seed, (number,), cache)
         x, explains = way.down()
-        optima.end_at(x, number, "optimum" if explains else "place")
+        if not explains:
+            optima.end_at(x, number, "place")
+            continue
+        optima.start_from(x, number)
         until = optima.starts + STARTS[1] - 1
         while optima.fits and not optima.is_settled and optima.starts < until:
-            optima.start_from(way.beside(best(optima.found), optima.starts), number)
+            again = replace(way, name=(number, optima.starts))
+            optima.start_from(again.from_optimum(best(optima.found)), number)
         if optima.fits:
-            optima.refine(number)
             break
     return optima, number + 1
 
 
 @dataclass(frozen=True)
 class _Way:
-    """A way from V = 0, or from a draw of the prior, over lower and lower μ.
+    """A way over lower and lower μ.
 
     Each of its parts has random numbers of its own, so that an interrupted search goes on alike.
     """
@@ -82,34 +87,38 @@ class _Way:
     drawn_from: Observation
     steps: Steps
     seed: int
-    number: int
+    name: tuple[int, ...]
     cache: Cache
 
     def down(self) -> tuple[FloatArray, bool]:
-        """Return unknowns (unknown,), and whether they explain data of all μ."""
+        """Go down from V = 0 or a draw of the prior: unknowns, and whether they explain all μ."""
         prior = self.observation.unknowns.prior
-        x = prior.mean if self.number == 0 else prior.draw(self._rng(), 2)[0]
-        for lines in LINES:
+        x = prior.mean if self.name == (0,) else prior.draw(self._rng(), 2)[0]
+        return self._over(LINES, x)
+
+    def from_optimum(self, optimum: Optimum) -> FloatArray:
+        """Leave an optimum, and go down from there: unknowns (unknown,)."""
+        first = AGAIN[self.name[-1] % len(AGAIN)]
+        x = self._better(self._draw(first, self._rng()), optimum.answer.mean, None)
+        return self._over(range(first, LINES.stop, LINES.step), x)[0]
+
+    def _over(self, counts: range, x: FloatArray) -> tuple[FloatArray, bool]:
+        """Return unknowns (unknown,), and whether they explain data of all μ."""
+        for lines in counts:
             x, foretells = self._foretell(lines, x, lines)
         for part in range(LINES.stop, LINES.stop + BACK):
             if not foretells:
                 break
             x = self._better(self.some, x, f"{part}.some")
             if is_noise(_excess(self.some, x)):
-                return self._better(self.observation, x, "all"), True
+                return x, True
             x, foretells = self._foretell(LINES[-1], x, part)
         return x, False
-
-    def beside(self, optimum: Optimum, start: int) -> FloatArray:
-        """Return unknowns beside an optimum: steps from it with a draw of data lead to them."""
-        part = LINES.stop + BACK + start
-        drawn = self._draw(LINES[-1], self._rng(part))
-        return self._better(drawn, optimum.answer.mean, str(part))
 
     def _foretell(self, lines: int, x: FloatArray, part: int) -> tuple[FloatArray, bool]:
         """Take steps with draws of so many lines until some need none; whether they do."""
         find = partial(self._until_foretold, lines, x, self._rng(part))
-        found = self.cache(f"down.{self.number}.{part}", find)
+        found = self.cache(f"{self._prefix}.{part}", find)
         return np.array(found["x"]), found["foretells"]
 
     def _until_foretold(
@@ -133,11 +142,15 @@ class _Way:
         return self.drawn_from.on_random_points(lines / FEW[0], (lines, *FEW[1:]), rng)
 
     def _better(self, part: Observation, x: FloatArray, name: str | None) -> FloatArray:
-        full = None if name is None else f"down.{self.number}.{name}"
-        return self.steps(part, x, self.number, full, (), "better").mean
+        full = None if name is None else f"{self._prefix}.{name}"
+        return self.steps(part, x, self.name[0], full, (), "better").mean
+
+    @property
+    def _prefix(self) -> str:
+        return ".".join(["way", *map(str, self.name)])
 
     def _rng(self, *part: int) -> np.random.Generator:
-        return np.random.default_rng([self.seed, 2**31 + 3, self.number, *part])
+        return np.random.default_rng([self.seed, 2**31 + 3, *self.name, *part])
 
 
 def _in_fields(observation: Observation) -> Observation:
