@@ -9,6 +9,7 @@ from multiprocessing import active_children, get_context
 from pathlib import Path
 
 import pytest
+from threadpoolctl import threadpool_info, threadpool_limits
 
 from disorder_landscape import ArgumentError
 from disorder_landscape.executors.local import LocalProcesses
@@ -16,6 +17,15 @@ from disorder_landscape.executors.local import LocalProcesses
 
 def test_every_task_has_its_result():
     assert sorted(LocalProcesses(2).each_result(abs, [-3, 1, -2])) == [1, 2, 3]
+
+
+def threads_of_linear_algebra(_):
+    return {one["num_threads"] for one in threadpool_info() if one["user_api"] == "blas"}
+
+
+def test_one_process_has_one_thread():
+    with threadpool_limits(2, user_api="blas"):
+        assert [*LocalProcesses(1).each_result(threads_of_linear_algebra, [0])] == [{1}]
 
 
 def test_tasks_that_may_be_ended_do_not_keep_whoever_stops(tmp_path):

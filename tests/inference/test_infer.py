@@ -7,6 +7,7 @@ import keras
 import numpy as np
 import pytest
 import xarray as xr
+from threadpoolctl import threadpool_info, threadpool_limits
 
 import disorder_landscape as dl
 from disorder_landscape import ArgumentError, Nanowire, conductance
@@ -229,6 +230,19 @@ def test_a_run_with_another_network_starts_anew(measured, tmp_path):
         with pytest.raises(KeyboardInterrupt):
             dl.infer(measured, model, NOISE, checkpoint=checkpoint, progress=interrupt_at_once)
         assert len(read_json(checkpoint, "checkpoint", "be one")) == runs
+
+
+def test_linear_algebra_has_one_thread(measured):
+    """… while the simulation has all."""
+    threads = set()
+
+    def progress(step):
+        threads.update(one["num_threads"] for one in threadpool_info() if one["user_api"] == "blas")
+        raise KeyboardInterrupt
+
+    with threadpool_limits(2, user_api="blas"), pytest.raises(KeyboardInterrupt):
+        infer(measured, progress=progress)
+    assert threads == {1}
 
 
 def test_the_seed_decides(measured, inferred):

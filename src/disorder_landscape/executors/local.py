@@ -11,6 +11,8 @@ from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from multiprocessing import active_children, get_context, parent_process
 
+from threadpoolctl import threadpool_limits
+
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.executors.executor import Result, Task
 from disorder_landscape.machine import cores
@@ -56,7 +58,7 @@ class LocalProcesses:
             If a worker was killed: all others end with it.
         """
         if self.workers == 1:
-            with threads_at_work(1):
+            with threads_at_work(1), threadpool_limits(1, user_api="blas"):
                 yield from map(function, tasks)
             return
         before = set(active_children())

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from threadpoolctl import threadpool_limits
 
 from disorder_landscape.arguments import (
     ArgumentError,
@@ -153,18 +154,21 @@ def infer(
     settings = settings or usual_settings(usable_network_features(trained, observation))
     fingerprint = _fingerprint(observation, trained, repr((seed, settings, start)))
     found_before = Checkpoint(checkpoint, fingerprint)
-    found = invert(observation, trained, seed, settings, progress, found_before)
-    said, effort = verdict(observation, found), BestEffort(observation, found, True)
-    if discrepancy:
-        last = found.attempts - 1
-        reports = (within(progress, last, stage) for stage in (GAUSS_NEWTON, IMPORTANCE_SAMPLING))
-        seeds = [seed, 2**31 + 4]
-        effort = best_effort(observation, found, seeds, found_before.cached, *reports)
-        found = effort.outcome
-    spread = observation.unknowns.site_std(found.answer.covariance)
-    misfit = overall_misfit(observation, found.best.data)
-    progress(Step(found.attempts - 1, MAPS, 0, misfit, spread))
-    result = result_of(effort.observation, found, samples, seed)
+    with threadpool_limits(1, user_api="blas"):  # else the simulation's threads wait for others
+        found = invert(observation, trained, seed, settings, progress, found_before)
+        said, effort = verdict(observation, found), BestEffort(observation, found, True)
+        if discrepancy:
+            last = found.attempts - 1
+            reports = (
+                within(progress, last, stage) for stage in (GAUSS_NEWTON, IMPORTANCE_SAMPLING)
+            )
+            seeds = [seed, 2**31 + 4]
+            effort = best_effort(observation, found, seeds, found_before.cached, *reports)
+            found = effort.outcome
+        spread = observation.unknowns.site_std(found.answer.covariance)
+        misfit = overall_misfit(observation, found.best.data)
+        progress(Step(found.attempts - 1, MAPS, 0, misfit, spread))
+        result = result_of(effort.observation, found, samples, seed)
     if discrepancy:
         result["discrepancy"] = discrepancy_of(observation, effort)
     result.attrs |= {

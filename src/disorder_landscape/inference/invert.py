@@ -12,7 +12,6 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from disorder_landscape.inference.checkpoint import Cache, Checkpoint, cached_gaussian
 from disorder_landscape.inference.optimum import Optimum, best
@@ -77,9 +76,6 @@ def invert(
 ) -> Outcome:
     """Return the optima of the posterior that explain the data best, and samples of it.
 
-    Linear algebra has one thread. The simulation's threads would wait for others: with two cores a
-    search of 69 s took 52 like this.
-
     Parameters
     ----------
     observation : Observation
@@ -96,16 +92,13 @@ def invert(
     cache = (checkpoint if checkpoint is not None else Checkpoint()).cached
     steps = partial(_steps, cache, progress)
     rounds = 0
-    with threadpool_limits(1, user_api="blas"):
-        if observation.unknowns.is_whole_landscape:
-            optima, attempts = optima_of_whole_landscape(observation, steps, seed, cache)
-        else:
-            found = _optima_of_few_unknowns(
-                observation, model, steps, seed, settings, progress, cache
-            )
-            optima, attempts, rounds = found
-        report = within(progress, attempts - 1, IMPORTANCE_SAMPLING)
-        drawn = posterior_samples(observation, optima.found, [seed, 2**31 + 2], cache, report)
+    if observation.unknowns.is_whole_landscape:
+        optima, attempts = optima_of_whole_landscape(observation, steps, seed, cache)
+    else:
+        found = _optima_of_few_unknowns(observation, model, steps, seed, settings, progress, cache)
+        optima, attempts, rounds = found
+    report = within(progress, attempts - 1, IMPORTANCE_SAMPLING)
+    drawn = posterior_samples(observation, optima.found, [seed, 2**31 + 2], cache, report)
     return Outcome(optima.found, drawn, attempts, rounds)
 
 

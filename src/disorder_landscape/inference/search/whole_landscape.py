@@ -156,7 +156,9 @@ class _Way:
 def _in_fields(observation: Observation) -> Observation:
     """Return an observation of what was measured at other fields than B = 0, if anything was."""
     m = observation.measurement
-    some = observation.at(np.arange(m.mu.size), np.flatnonzero(m.B), np.arange(m.bias.size))
+    some = observation.at(
+        np.arange(m.mu.size), np.flatnonzero(~np.isclose(m.B, 0)), np.arange(m.bias.size)
+    )
     return some if some.data.size else observation
 
 
