@@ -37,7 +37,7 @@ class Linear:
     def exact_slopes(self, x):
         return None
 
-    def on_some_lines(self, share, rng):
+    def on_some_lines(self, share, fewest, rng):
         return self
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.search.gauss_newton import gauss_newton
-from disorder_landscape.inference.search.optima import Optima
+from disorder_landscape.inference.search.optima import FEWEST, SHARES, Optima
 from disorder_landscape.model.parameters import BOLTZMANN
 from linear_data import DATA, SIZE, Linear, Measured, posterior
 
@@ -31,21 +31,27 @@ def folds():
     return replace(measured, data=measured.simulate((2 * AXIS)[None])[0])
 
 
-def optima_of(observation, **options):
+def optima_of(observation):
+    """Their steps use few data first, which here are all."""
+
     def steps(of, x, attempt, name, known, goal):
         return gauss_newton(of, x, known=known)
 
-    return Optima(observation, observation, steps, **options)
+    return Optima(observation, steps)
+
+
+def start(optima, x, attempt=0):
+    optima.start_from(x, attempt, np.random.default_rng(0))
 
 
 def test_both_signs_are_found_and_counted(folds):
     """… with as many starts as a posterior needs that is much wider than kT."""
     optima = optima_of(folds)
     for side in (1.9, -2.2, 2.1, -1.8, 1.5, 2.3, -2.1):
-        optima.start_from(side * AXIS, 0)
+        start(optima, side * AXIS)
         assert not optima.is_settled
     assert optima.is_wide
-    optima.start_from(2 * AXIS, 1)
+    start(optima, 2 * AXIS, 1)
     assert optima.is_settled
     one, other = optima.found
     np.testing.assert_allclose(one.answer.mean[0], 2, atol=0.3)
@@ -56,9 +62,10 @@ def test_both_signs_are_found_and_counted(folds):
 def test_an_optimum_found_once_is_a_sign_of_more(folds):
     optima = optima_of(folds)
     for side in [2.0] * 9 + [-2.0]:
-        optima.start_from(side * AXIS, 0)
+        start(optima, side * AXIS)
     assert not optima.is_settled
-    optima.start_from(-2.2 * AXIS, 0)
+    for side in (-2.2, -2.1):
+        start(optima, side * AXIS)
     assert optima.is_settled
 
 
@@ -67,30 +74,55 @@ def test_a_narrow_posterior_takes_three_starts_that_agree(folds):
     optima = optima_of(warm)
     settled = []
     for _ in range(3):
-        optima.start_from(2 * AXIS, 0)
+        start(optima, 2 * AXIS)
         settled.append(optima.is_settled)
     assert settled == [False, False, True]
     assert not optima.is_wide
     assert optima.is_settled
 
 
-def test_starts_far_above_the_best_are_left_with_some_of_the_data(folds):
-    """What they would lead to with all data is not asked."""
-    asked = []
+def test_steps_use_few_data_first_and_other_ones_each_time(folds):
+    """… and all where they explain the last of these."""
+    asked, shares = [], []
+
+    class Some(Folds):
+        def on_some_lines(self, share, fewest, rng):
+            shares.append((share, fewest, rng))
+            return replace(self, data=self.data + 0.01 * rng.normal(size=DATA))
 
     def steps(of, x, attempt, name, known, goal):
         asked.append((name, goal))
-        covariance = 0.01 * np.eye(SIZE)
-        return Gaussian(x, covariance)
+        data.append(of.data)
+        return Gaussian(x, 0.01 * np.eye(SIZE))
 
-    optima = Optima(folds, folds, steps)
-    optima.start_from(2 * AXIS, 0)
-    optima.start_from(40 * AXIS, 0)
-    assert asked == [("0.0.some", "place"), ("0.0", "optimum"), ("0.1.some", "place")]
+    data, rng = [], np.random.default_rng(0)
+    optima = Optima(Some(**vars(folds)), steps)
+    optima.start_from(2 * AXIS, 0, rng)
+    few = [f"0.{stage}" for stage in range(len(SHARES))]
+    assert asked == [*((f"0.{name}", "place") for name in few), ("0.0", "optimum")]
+    assert shares == [(share, FEWEST, rng) for share in SHARES]
+    assert len({one.tobytes() for one in data}) == len(SHARES) + 1
+    optima.start_from(40 * AXIS, 0, rng)  # which explains nothing
+    assert asked[len(SHARES) + 1 :] == [(f"0.1.{stage}", "place") for stage in range(len(SHARES))]
     assert len(optima.found) == 1
-    optima.start_from(40 * AXIS, 0)  # again
-    assert len(optima.found) == 1
-    assert optima.starts == 3
+    assert optima.starts == 2
+
+
+def test_ends_that_are_near_but_not_as_good_do_not_agree(linear):
+    """… though error bars allow them to be the same: the better one is kept."""
+    exact = posterior(linear)
+    off = exact.mean + 1.5 * np.sqrt(np.diag(exact.covariance))
+    ends = [off, exact.mean, exact.mean, off]
+
+    def steps(of, x, attempt, name, known, goal):
+        return Gaussian(x, exact.covariance)
+
+    optima = Optima(linear, steps)
+    for attempt, end in enumerate(ends):
+        optima.end_at(end, attempt)
+    (one,) = optima.found
+    assert one.found_by == (1, 2)
+    assert one.answer.mean is ends[2]
 
 
 def test_data_that_no_optimum_explains_are_not_settled(linear):
@@ -98,7 +130,7 @@ def test_data_that_no_optimum_explains_are_not_settled(linear):
     off = replace(linear, data=linear.data + 10 * (-1.0) ** np.arange(DATA))
     optima = optima_of(off)
     for _ in range(20):
-        optima.start_from(posterior(off).mean, 0)
+        start(optima, posterior(off).mean)
     assert optima.found == []
     assert not optima.fits
     optima.end_at(posterior(off).mean, 0)
@@ -113,6 +145,6 @@ def test_little_noise_takes_two_starts_that_agree(linear):
     quiet = replace(linear, variance=np.full(DATA, 1e-8), measurement=COLD)
     optima = optima_of(replace(quiet, data=quiet.slope.sum(axis=0)))
     for settled in (False, True):
-        optima.start_from(np.zeros(SIZE), 0)
+        start(optima, np.zeros(SIZE))
         assert optima.is_settled == settled
     assert not optima.is_wide

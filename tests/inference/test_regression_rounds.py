@@ -58,7 +58,7 @@ def test_rounds_that_lead_nowhere_end(linear, nearly_noise):
         def simulate(self, X):
             return 2.0 * np.sin(500 * X @ self.slope)
 
-        def on_some_lines(self, share, rng):
+        def on_some_lines(self, share, fewest, rng):
             shares.append(share)
             return self
 

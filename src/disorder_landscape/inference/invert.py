@@ -22,7 +22,7 @@ from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.search.first_guess import network_guess
 from disorder_landscape.inference.search.gauss_newton import Goal, gauss_newton
 from disorder_landscape.inference.search.network_features import NetworkFeatures, network_features
-from disorder_landscape.inference.search.optima import SHARE, Optima, Steps
+from disorder_landscape.inference.search.optima import Optima, Steps
 from disorder_landscape.inference.search.regression_rounds import (
     WITH_NETWORK_FEATURES,
     Round,
@@ -118,8 +118,7 @@ def _optima_of_few_unknowns(
     if model is not None:
         rng = np.random.default_rng([seed, 2**31])
         guess = cached_gaussian(cache, "guess", partial(network_guess, model, observation, rng))
-    some = observation.on_some_lines(SHARE, np.random.default_rng([seed, 2**31 + 3]))
-    optima = Optima(observation, some, steps)
+    optima = Optima(observation, steps)
     count = 0
     for number in range(settings.attempts):
         start = guess if guess is not None and number == 0 else prior
@@ -187,7 +186,7 @@ def _start_about(optima: Optima, found: Gaussian, rng: np.random.Generator, numb
         if fits and is_surely_right(optima.observation):
             about = Gaussian(best(optima.found).answer.mean, NEARBY**2 * found.covariance)
         x = found.mean if tried == 0 else about.draw(rng, 2)[0]
-        optima.start_from(x, number)
+        optima.start_from(x, number, rng)
         tried += 1
 
 

@@ -26,8 +26,6 @@ TRUSTED_NEAR_GAP = 3e-2
 """The same where the thermal window reaches the gap: the estimate is that of ∂/∂Δ₀ there."""
 POINTS_AT_ONCE = 4
 """Chemical potentials at which derivatives by all sites are in memory together."""
-FEW = 7
-"""Grids of so many lines or fewer stay whole."""
 
 
 class Slopes(NamedTuple):
@@ -82,14 +80,14 @@ class Observation:
         """Return simulated data of samples X (sample, unknown), shape (sample, datum)."""
         return np.asarray(self.conductances(X)[:, self.is_measured])
 
-    def on_some_lines(self, share: float, rng: np.random.Generator) -> Observation:
+    def on_some_lines(self, share: float, fewest: int, rng: np.random.Generator) -> Observation:
         """Return an observation of random lines of μ and B, which hold this share of the data.
 
-        Grids of up to FEW lines stay whole, and those where too many data are missing.
+        Grids of up to so many lines stay whole, and those where too many data are missing.
         """
         m = self.measurement
         mu, B = (
-            np.sort(rng.choice(n, max(min(FEW, n), round(n * np.sqrt(share))), replace=False))
+            np.sort(rng.choice(n, max(min(fewest, n), round(n * np.sqrt(share))), replace=False))
             for n in (m.mu.size, m.B.size)
         )
         part = self.at(mu, B, np.arange(m.bias.size))

@@ -6,6 +6,9 @@ all from 5 to 30 µeV off, a quarter to a half from 100 µeV off. One start alon
 beside the best one that fits all but as well. Starts that agree tell; and where the noise leaves
 several minima that are about as probable, these are all looked for, until each has been found more
 than once.
+
+Steps from a start take few data first, and then more and more, others each time. Few data have
+fewer minima than many, and each other draw leads out of those that only the one before has.
 """
 
 from __future__ import annotations
@@ -13,18 +16,28 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
-from disorder_landscape.inference.optimum import Optimum, best, optimum_at, same_answer, unseen
+import numpy as np
+
+from disorder_landscape.inference.optimum import (
+    Optimum,
+    best,
+    chi_square_excess,
+    is_noise,
+    optimum_at,
+    same_answer,
+    unseen,
+)
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.observation import Observation
-from disorder_landscape.inference.search.gauss_newton import Goal, is_near
+from disorder_landscape.inference.search.gauss_newton import Goal
 from disorder_landscape.inference.verdict import UNSEEN, is_surely_right
 from disorder_landscape.model.parameters import BOLTZMANN, FloatArray
 
-SHARE = 0.25
-"""Of the data that steps from a start use first: they take a quarter of the time."""
-REACH = 30.0
-"""Steps go on with all data if the optimum on these explains them, and is worse than the best one
-so far by no more than this in −2 log(posterior)."""
+SHARES = 0.04, 0.16, 0.36
+"""Of the data that steps from a start use, one after the other. They go on with all data if what
+they come to explains the last of these."""
+FEWEST = 3
+"""Lines of μ and of B that these data have at least."""
 AGREEING = 2, 3
 """How many starts must lead to the best optimum: where the noise is so small that an answer that
 fits is right all but surely, and otherwise. (Of thirteen such wires without noise, one start ended
@@ -50,24 +63,16 @@ class Optima:
     Parameters
     ----------
     observation : Observation
-    some : Observation
-        The part of its data that steps use first.
     steps : callable
-    goals : pair
-        Of steps with that part from a start, and then with all data.
     when_wide : pair of int
         How many starts there are at least and at most where the posterior may have several maxima.
     """
 
     observation: Observation
-    some: Observation
     steps: Steps
-    goals: tuple[Goal, Goal] = ("place", "optimum")
     when_wide: tuple[int, int] = STARTS_WHEN_WIDE
     found: list[Optimum] = field(default_factory=list)
     starts: int = 0
-    _on_some: list[tuple[Optimum, int | None]] = field(default_factory=list)
-    """Optima on these data, and which of those `found` they lead to, if any."""
 
     @property
     def fits(self) -> bool:
@@ -101,46 +106,32 @@ class Optima:
         """Whether no more starts are needed, or worth their time."""
         return self.is_settled or self.is_exhausted
 
-    def start_from(self, x: FloatArray, attempt: int) -> None:
-        """Find the optimum that steps from x (unknown,) lead to, with some of the data first."""
+    def start_from(self, x: FloatArray, attempt: int, rng: np.random.Generator) -> None:
+        """Find the optimum that steps from x (unknown,) lead to, with few data first."""
         name = self._next_name(attempt)
-        known = [one for one, _ in self._on_some]
-        on_some, on_all = self.goals
-        end = self.steps(self.some, x, attempt, f"{name}.some", known, on_some)
-        for one, leads_to in self._on_some:
-            if is_near(one, end.mean):
-                self._found_again(leads_to, attempt)
-                return
-        near = optimum_at(self.some, end, attempt)
-        least = best([*known, near]).objective
-        leave = not near.fits or near.objective > least + REACH
-        to = None if leave else self._optimum_from(end.mean, attempt, name, on_all)
-        self._on_some.append((near, to))
+        for stage, share in enumerate(SHARES):
+            part = self.observation.on_some_lines(share, FEWEST, rng)
+            x = self.steps(part, x, attempt, f"{name}.{stage}", (), "place").mean
+        if is_noise(chi_square_excess(part, part.simulate(x[None])[0])):
+            self._end_at(x, attempt, name, "optimum")
 
-    def end_at(self, x: FloatArray, attempt: int, goal: Goal = "optimum") -> Optimum:
-        """Return the optimum that steps from x (unknown,) with all data lead to."""
-        return self.found[self._optimum_from(x, attempt, self._next_name(attempt), goal)]
+    def end_at(self, x: FloatArray, attempt: int, goal: Goal = "optimum") -> None:
+        """Find the optimum that steps from x (unknown,) with all data lead to."""
+        self._end_at(x, attempt, self._next_name(attempt), goal)
 
     def _next_name(self, attempt: int) -> str:
         """Count a start, and return its name."""
         self.starts += 1
         return f"{attempt}.{self.starts - 1}"
 
-    def _optimum_from(self, x: FloatArray, attempt: int, name: str, goal: Goal) -> int:
-        """Return which optimum of all data steps lead to."""
+    def _end_at(self, x: FloatArray, attempt: int, name: str, goal: Goal) -> None:
         end = self.steps(self.observation, x, attempt, name, self.found, goal)
         new = optimum_at(self.observation, end, attempt)
         for k, one in enumerate(self.found):
             if same_answer(self.observation, one, new):
                 self.found[k] = _better(one, new)
-                return k
+                return
         self.found.append(new)
-        return len(self.found) - 1
-
-    def _found_again(self, k: int | None, attempt: int) -> None:
-        if k is not None:
-            one = self.found[k]
-            self.found[k] = replace(one, found_by=(*one.found_by, attempt))
 
 
 def _better(one: Optimum, other: Optimum) -> Optimum:

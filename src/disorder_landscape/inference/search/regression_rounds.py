@@ -45,6 +45,8 @@ class RoundSettings:
     share: float = 0.25
     """Share of the data that the first rounds use. When these end, rounds go on with all data. So
     close to the answer there may be several optima again, some standard deviations apart. …"""
+    fewest: int = 7
+    """… It has so many lines of μ and of B at least. …"""
     share_of_samples: float = 0.5
     """… Then this share of the samples is enough, since the data are nearly linear."""
     nearly_noise: float = 2.0
@@ -174,7 +176,7 @@ def _no_samples(
     """Return where the samples of rounds on a share of the data are collected, still empty."""
     if features is not None and share < 1:
         return ProposalSamples(features.on_grid, settings.most, features)
-    some = observation.on_some_lines(share, np.random.default_rng(seed))
+    some = observation.on_some_lines(share, settings.fewest, np.random.default_rng(seed))
     return ProposalSamples(some, settings.most)
 
 

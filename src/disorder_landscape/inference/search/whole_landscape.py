@@ -58,18 +58,16 @@ def optima_of_whole_landscape(
 ) -> tuple[Optima, int]:
     """Return the optima to which steps over lower and lower μ lead, and how many ways down."""
     some, drawn_from = observation.on_few_points(*MORE), _in_fields(observation)
-    optima = Optima(observation, some, steps, ("optimum", "optimum"), STARTS)
+    optima = Optima(observation, steps, STARTS)
     for number in range(WAYS_DOWN):
         way = _Way(observation, some, drawn_from, steps, seed, (number,), cache)
         x, explains = way.down()
-        if not explains:
-            optima.end_at(x, number, "place")
-            continue
-        optima.start_from(x, number)
+        optima.end_at(x, number, "optimum" if explains else "place")
         until = optima.starts + STARTS[1] - 1
         while optima.fits and not optima.is_settled and optima.starts < until:
             again = replace(way, name=(number, optima.starts))
-            optima.start_from(again.from_optimum(best(optima.found)), number)
+            x, explains = again.from_optimum(best(optima.found))
+            optima.end_at(x, number, "optimum" if explains else "place")
         if optima.fits:
             break
     return optima, number + 1
@@ -96,11 +94,11 @@ class _Way:
         x = prior.mean if self.name == (0,) else prior.draw(self._rng(), 2)[0]
         return self._over(LINES, x)
 
-    def from_optimum(self, optimum: Optimum) -> FloatArray:
-        """Leave an optimum, and go down from there: unknowns (unknown,)."""
+    def from_optimum(self, optimum: Optimum) -> tuple[FloatArray, bool]:
+        """Leave an optimum, and go down from there: unknowns, and whether they explain all μ."""
         first = AGAIN[self.name[-1] % len(AGAIN)]
         x = self._better(self._draw(first, self._rng()), optimum.answer.mean, None)
-        return self._over(range(first, LINES.stop, LINES.step), x)[0]
+        return self._over(range(first, LINES.stop, LINES.step), x)
 
     def _over(self, counts: range, x: FloatArray) -> tuple[FloatArray, bool]:
         """Return unknowns (unknown,), and whether they explain data of all μ."""
