@@ -48,7 +48,7 @@ AS_GOOD = 3.0
 WIDE = 1.0
 """The posterior may have several maxima if the noise may hide them and V is uncertain by more than
 this many kT. …"""
-STARTS_WHEN_WIDE = 8, 16
+STARTS_WHEN_WIDE = 16, 32
 """… Then there are at least, and at most, so many starts."""
 
 Steps = Callable[[Observation, FloatArray, int, str | None, Sequence[Optimum], Goal], Gaussian]
