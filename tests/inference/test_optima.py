@@ -7,7 +7,7 @@ import pytest
 
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.search.gauss_newton import gauss_newton
-from disorder_landscape.inference.search.optima import FEWEST, SHARES, Optima
+from disorder_landscape.inference.search.optima import Optima
 from disorder_landscape.model.parameters import BOLTZMANN
 from linear_data import DATA, SIZE, Linear, Measured, posterior
 
@@ -32,40 +32,34 @@ def folds():
 
 
 def optima_of(observation):
-    """Their steps use few data first, which here are all."""
-
     def steps(of, x, attempt, name, known, goal):
         return gauss_newton(of, x, known=known)
 
     return Optima(observation, steps)
 
 
-def start(optima, x, attempt=0):
-    optima.start_from(x, attempt, np.random.default_rng(0))
-
-
 def test_both_signs_are_found_and_counted(folds):
     """… with as many starts as a posterior needs that is much wider than kT."""
     optima = optima_of(folds)
-    for side in (1.9, -2.2, 2.1, -1.8, 1.5, 2.3, -2.1):
-        start(optima, side * AXIS)
+    for side in [1.9, -2.2, 2.1, -1.8, 1.5] * 3:
+        optima.start_at(side * AXIS, 0)
         assert not optima.is_settled
     assert optima.is_wide
-    start(optima, 2 * AXIS, 1)
+    optima.start_at(2 * AXIS, 1)
     assert optima.is_settled
     one, other = optima.found
     np.testing.assert_allclose(one.answer.mean[0], 2, atol=0.3)
     np.testing.assert_allclose(other.answer.mean[0], -2, atol=0.3)
-    assert (one.found_by, other.found_by) == ((0, 0, 0, 0, 1), (0, 0, 0))
+    assert (one.found_by, other.found_by) == (9 * (0,) + (1,), 6 * (0,))
 
 
 def test_an_optimum_found_once_is_a_sign_of_more(folds):
     optima = optima_of(folds)
-    for side in [2.0] * 9 + [-2.0]:
-        start(optima, side * AXIS)
+    for side in [2.0] * 15 + [-2.0]:
+        optima.start_at(side * AXIS, 0)
     assert not optima.is_settled
     for side in (-2.2, -2.1):
-        start(optima, side * AXIS)
+        optima.start_at(side * AXIS, 0)
     assert optima.is_settled
 
 
@@ -74,38 +68,11 @@ def test_a_narrow_posterior_takes_three_starts_that_agree(folds):
     optima = optima_of(warm)
     settled = []
     for _ in range(3):
-        start(optima, 2 * AXIS)
+        optima.start_at(2 * AXIS, 0)
         settled.append(optima.is_settled)
     assert settled == [False, False, True]
     assert not optima.is_wide
     assert optima.is_settled
-
-
-def test_steps_use_few_data_first_and_other_ones_each_time(folds):
-    """… and all where they explain the last of these."""
-    asked, shares = [], []
-
-    class Some(Folds):
-        def on_some_lines(self, share, fewest, rng):
-            shares.append((share, fewest, rng))
-            return replace(self, data=self.data + 0.01 * rng.normal(size=DATA))
-
-    def steps(of, x, attempt, name, known, goal):
-        asked.append((name, goal))
-        data.append(of.data)
-        return Gaussian(x, 0.01 * np.eye(SIZE))
-
-    data, rng = [], np.random.default_rng(0)
-    optima = Optima(Some(**vars(folds)), steps)
-    optima.start_from(2 * AXIS, 0, rng)
-    few = [f"0.{stage}" for stage in range(len(SHARES))]
-    assert asked == [*((f"0.{name}", "place") for name in few), ("0.0", "optimum")]
-    assert shares == [(share, FEWEST, rng) for share in SHARES]
-    assert len({one.tobytes() for one in data}) == len(SHARES) + 1
-    optima.start_from(40 * AXIS, 0, rng)  # which explains nothing
-    assert asked[len(SHARES) + 1 :] == [(f"0.1.{stage}", "place") for stage in range(len(SHARES))]
-    assert len(optima.found) == 1
-    assert optima.starts == 2
 
 
 def test_ends_that_are_near_but_not_as_good_do_not_agree(linear):
@@ -119,21 +86,17 @@ def test_ends_that_are_near_but_not_as_good_do_not_agree(linear):
 
     optima = Optima(linear, steps)
     for attempt, end in enumerate(ends):
-        optima.end_at(end, attempt)
+        optima.start_at(end, attempt)
     (one,) = optima.found
     assert one.found_by == (1, 2)
     assert one.answer.mean is ends[2]
 
 
 def test_data_that_no_optimum_explains_are_not_settled(linear):
-    """Steps that do not explain some of them are not continued; at last they are, with all."""
     off = replace(linear, data=linear.data + 10 * (-1.0) ** np.arange(DATA))
     optima = optima_of(off)
     for _ in range(20):
-        start(optima, posterior(off).mean)
-    assert optima.found == []
-    assert not optima.fits
-    optima.end_at(posterior(off).mean, 0)
+        optima.start_at(posterior(off).mean, 0)
     assert len(optima.found) == 1
     assert not optima.fits
     assert not optima.is_settled
@@ -145,6 +108,6 @@ def test_little_noise_takes_two_starts_that_agree(linear):
     quiet = replace(linear, variance=np.full(DATA, 1e-8), measurement=COLD)
     optima = optima_of(replace(quiet, data=quiet.slope.sum(axis=0)))
     for settled in (False, True):
-        start(optima, np.zeros(SIZE))
+        optima.start_at(np.zeros(SIZE), 0)
         assert optima.is_settled == settled
     assert not optima.is_wide

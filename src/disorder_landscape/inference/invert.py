@@ -14,7 +14,7 @@ from functools import partial
 import numpy as np
 
 from disorder_landscape.inference.checkpoint import Cache, Checkpoint, cached_gaussian
-from disorder_landscape.inference.optimum import Optimum, best
+from disorder_landscape.inference.optimum import Optimum
 from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.posterior.samples import posterior_samples
 from disorder_landscape.inference.problem.gaussian import Gaussian
@@ -29,6 +29,7 @@ from disorder_landscape.inference.search.regression_rounds import (
     RoundSettings,
     regression_rounds,
 )
+from disorder_landscape.inference.search.starts import Starts
 from disorder_landscape.inference.search.whole_landscape import optima_of_whole_landscape
 from disorder_landscape.inference.stages import (
     GAUSS_NEWTON,
@@ -39,19 +40,12 @@ from disorder_landscape.inference.stages import (
     silent,
     within,
 )
-from disorder_landscape.inference.verdict import is_surely_right
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.model.parameters import FloatArray
 
 TRIED_FROM = 0.15
 """Gauss–Newton steps are tried if the distribution of V is narrower than this in meV, and again
-whenever it is half as wide. …"""
-STARTS = 2, 4
-"""… They start at its mean and at draws: so many if none ends at an optimum that fits, or if one
-does."""
-NEARBY = 0.2
-"""Where an answer that fits is right all but surely, another start must find it again from this
-part of the distribution's width away."""
+whenever it is half as wide."""
 
 
 @dataclass(frozen=True)
@@ -118,16 +112,16 @@ def _optima_of_few_unknowns(
     if model is not None:
         rng = np.random.default_rng([seed, 2**31])
         guess = cached_gaussian(cache, "guess", partial(network_guess, model, observation, rng))
-    optima = Optima(observation, steps)
+    starts = Starts(Optima(observation, steps), np.random.default_rng([seed, 2**31 + 3]))
     count = 0
     for number in range(settings.attempts):
         start = guess if guess is not None and number == 0 else prior
         more = _with_more_samples(settings, number)
         rounds = regression_rounds(observation, start, [seed, number], more, cache, features)
-        count += _search(optima, start, rounds, seed, number, progress)
-        if optima.is_done:
+        count += _search(starts, start, rounds, seed, number, progress)
+        if starts.optima.is_done:
             break
-    return optima, number + 1, count
+    return starts.optima, number + 1, count
 
 
 def _steps(
@@ -149,7 +143,7 @@ def _steps(
 
 
 def _search(
-    optima: Optima,
+    starts: Starts,
     start: Gaussian,
     rounds: Iterator[Round],
     seed: int,
@@ -157,37 +151,21 @@ def _search(
     progress: Progress,
 ) -> int:
     """Add the optima of one attempt, and return how many rounds it has taken."""
-    found, count = start, 0
+    optima, found, count = starts.optima, start, 0
     spread = optima.observation.unknowns.site_std(start.covariance)
     next_try = TRIED_FROM
     while True:
         if spread < next_try:
             next_try = spread / 2
-            _start_about(optima, found, np.random.default_rng([seed, number, count, 2]), number)
+            starts.start_about(found, number, np.random.default_rng([seed, number, count, 2]))
             if optima.is_done:
                 return count
         one = next(rounds, None)
         if one is None:
-            optima.end_at(found.mean, number)
+            optima.start_at(found.mean, number)
             return count
         progress(Step(number, ROUND, count, one.misfit, one.spread))
         found, count, spread = one.distribution, count + 1, one.spread
-
-
-def _start_about(optima: Optima, found: Gaussian, rng: np.random.Generator, number: int) -> None:
-    """Let steps start at the mean of a distribution, and at draws from it."""
-    few, more = STARTS
-    tried = 0
-    while not optima.is_done:
-        fits = optima.fits
-        if tried >= (more if fits else few) and not (fits and optima.is_wide):
-            return
-        about = found
-        if fits and is_surely_right(optima.observation):
-            about = Gaussian(best(optima.found).answer.mean, NEARBY**2 * found.covariance)
-        x = found.mean if tried == 0 else about.draw(rng, 2)[0]
-        optima.start_from(x, number, rng)
-        tried += 1
 
 
 def usual_settings(features: NetworkFeatures | None) -> InversionSettings:

@@ -6,9 +6,6 @@ all from 5 to 30 µeV off, a quarter to a half from 100 µeV off. One start alon
 beside the best one that fits all but as well. Starts that agree tell; and where the noise leaves
 several minima that are about as probable, these are all looked for, until each has been found more
 than once.
-
-Steps from a start take few data first, and then more and more, others each time. Few data have
-fewer minima than many, and each other draw leads out of those that only the one before has.
 """
 
 from __future__ import annotations
@@ -16,28 +13,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
-import numpy as np
-
-from disorder_landscape.inference.optimum import (
-    Optimum,
-    best,
-    chi_square_excess,
-    is_noise,
-    optimum_at,
-    same_answer,
-    unseen,
-)
+from disorder_landscape.inference.optimum import Optimum, best, optimum_at, same_answer, unseen
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.search.gauss_newton import Goal
 from disorder_landscape.inference.verdict import UNSEEN, is_surely_right
 from disorder_landscape.model.parameters import BOLTZMANN, FloatArray
 
-SHARES = 0.04, 0.16, 0.36
-"""Of the data that steps from a start use, one after the other. They go on with all data if what
-they come to explains the last of these."""
-FEWEST = 3
-"""Lines of μ and of B that these data have at least."""
 AGREEING = 2, 3
 """How many starts must lead to the best optimum: where the noise is so small that an answer that
 fits is right all but surely, and otherwise. (Of thirteen such wires without noise, one start ended
@@ -106,32 +88,30 @@ class Optima:
         """Whether no more starts are needed, or worth their time."""
         return self.is_settled or self.is_exhausted
 
-    def start_from(self, x: FloatArray, attempt: int, rng: np.random.Generator) -> None:
-        """Find the optimum that steps from x (unknown,) lead to, with few data first."""
-        name = self._next_name(attempt)
-        for stage, share in enumerate(SHARES):
-            part = self.observation.on_some_lines(share, FEWEST, rng)
-            x = self.steps(part, x, attempt, f"{name}.{stage}", (), "place").mean
-        if is_noise(chi_square_excess(part, part.simulate(x[None])[0])):
-            self._end_at(x, attempt, name, "optimum")
-
-    def end_at(self, x: FloatArray, attempt: int, goal: Goal = "optimum") -> None:
-        """Find the optimum that steps from x (unknown,) with all data lead to."""
-        self._end_at(x, attempt, self._next_name(attempt), goal)
-
-    def _next_name(self, attempt: int) -> str:
+    def count_start(self, attempt: int) -> str:
         """Count a start, and return its name."""
         self.starts += 1
         return f"{attempt}.{self.starts - 1}"
 
-    def _end_at(self, x: FloatArray, attempt: int, name: str, goal: Goal) -> None:
+    def start_at(self, x: FloatArray, attempt: int, goal: Goal = "optimum") -> None:
+        """Find the optimum that steps from x (unknown,) with all data lead to."""
+        self.end_at(x, attempt, self.count_start(attempt), goal)
+
+    def end_at(self, x: FloatArray, attempt: int, name: str, goal: Goal) -> int:
+        """Do so for a start that has been counted, and return which of those found it is."""
         end = self.steps(self.observation, x, attempt, name, self.found, goal)
         new = optimum_at(self.observation, end, attempt)
         for k, one in enumerate(self.found):
             if same_answer(self.observation, one, new):
                 self.found[k] = _better(one, new)
-                return
+                return k
         self.found.append(new)
+        return len(self.found) - 1
+
+    def found_again(self, k: int, attempt: int) -> None:
+        """Note that another start leads to this one of those found."""
+        one = self.found[k]
+        self.found[k] = replace(one, found_by=(*one.found_by, attempt))
 
 
 def _better(one: Optimum, other: Optimum) -> Optimum:

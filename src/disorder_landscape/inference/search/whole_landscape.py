@@ -62,12 +62,12 @@ def optima_of_whole_landscape(
     for number in range(WAYS_DOWN):
         way = _Way(observation, some, drawn_from, steps, seed, (number,), cache)
         x, explains = way.down()
-        optima.end_at(x, number, "optimum" if explains else "place")
+        optima.start_at(x, number, "optimum" if explains else "place")
         until = optima.starts + STARTS[1] - 1
         while optima.fits and not optima.is_settled and optima.starts < until:
             again = replace(way, name=(number, optima.starts))
             x, explains = again.from_optimum(best(optima.found))
-            optima.end_at(x, number, "optimum" if explains else "place")
+            optima.start_at(x, number, "optimum" if explains else "place")
         if optima.fits:
             break
     return optima, number + 1

@@ -1,0 +1,94 @@
+"""The way of a start: few data, which are drawn for it, then the same for all starts, then all."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from disorder_landscape.inference.problem.gaussian import Gaussian
+from disorder_landscape.inference.search.gauss_newton import gauss_newton
+from disorder_landscape.inference.search.optima import Optima
+from disorder_landscape.inference.search.starts import DRAWN, FEWEST, SHARE, STARTS, Starts
+from linear_data import DATA, SIZE, Linear, posterior
+
+AXIS = np.eye(SIZE)[0]
+
+
+class Parts(Linear):
+    """Linear data whose parts are all of them with other errors, and remember what was asked."""
+
+    asked: list
+
+    def on_some_lines(self, share, fewest, rng):
+        self.asked.append((share, fewest))
+        return replace(self, data=self.data + 1e-4 * rng.normal(size=DATA))
+
+
+@pytest.fixture
+def parts(linear):
+    found = Parts(**vars(linear))
+    found.asked = []
+    Parts.asked = found.asked
+    return found
+
+
+def starts_of(observation, steps):
+    return Starts(Optima(observation, steps), np.random.default_rng(0))
+
+
+def test_steps_use_drawn_data_first_then_the_same_for_all_starts_and_then_all(parts):
+    asked = []
+
+    def steps(of, x, attempt, name, known, goal):
+        asked.append((name, goal, of.data))
+        return gauss_newton(of, x, known=known)
+
+    starts, rng = starts_of(parts, steps), np.random.default_rng(1)
+    for attempt in (0, 1):
+        starts.start_from(np.zeros(SIZE), attempt, rng)
+    drawn = [(share, FEWEST[0]) for share in DRAWN]
+    assert parts.asked == [(SHARE, FEWEST[1]), *drawn, *drawn]
+    few = [f"drawn.{number}" for number in range(len(DRAWN))]
+    names = [(f"0.0.{name}", "place") for name in (*few, "some")] + [("0.0", "optimum")]
+    again = [(f"1.1.{name}", "place") for name in (*few, "some")]
+    assert [one[:2] for one in asked] == names + again
+    used = [data.tobytes() for _, _, data in asked]
+    assert len(set(used)) == len(used) - 1  # once the same, of both starts
+    assert used[len(DRAWN)] == used[-1]
+    (one,) = starts.optima.found
+    assert one.found_by == (0, 1)
+    np.testing.assert_allclose(one.answer.mean, posterior(parts).mean, atol=1e-6)
+
+
+def test_starts_far_above_the_best_are_left_with_some_of_the_data(parts):
+    """What they would lead to with all data is not asked."""
+    asked = []
+
+    def steps(of, x, attempt, name, known, goal):
+        asked.append(name)
+        return Gaussian(x, 0.01 * np.eye(SIZE))
+
+    starts, rng = starts_of(parts, steps), np.random.default_rng(1)
+    starts.start_from(posterior(parts).mean, 0, rng)
+    for _ in range(2):
+        starts.start_from(40 * AXIS, 0, rng)
+    assert [name for name in asked if name.count(".") == 1] == ["0.0"]
+    assert len(starts.optima.found) == 1
+    assert starts.optima.starts == 3
+
+
+def test_where_no_start_fits_there_are_few(parts):
+    """The first is at the mean of the distribution that they are drawn from."""
+    begun = []
+
+    def steps(of, x, attempt, name, known, goal):
+        if name.endswith("drawn.0"):
+            begun.append(x)
+        return Gaussian(40 * AXIS, 0.01 * np.eye(SIZE))
+
+    starts = starts_of(parts, steps)
+    about = Gaussian(np.ones(SIZE), np.eye(SIZE))
+    starts.start_about(about, 0, np.random.default_rng(1))
+    assert len(begun) == STARTS[0]
+    np.testing.assert_array_equal(begun[0], about.mean)
+    assert not starts.optima.fits
