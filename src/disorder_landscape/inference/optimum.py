@@ -23,6 +23,9 @@ SAME_ANSWER = 2.0
 """Two optima are the same if they are closer than this many of their standard deviations, root mean
 square over the principal axes. (Where the posterior bends they differ by about one.)"""
 
+NEGLIGIBLE = 1e-3
+"""Optima with less than this share of the posterior are left out of it."""
+
 
 @dataclass(frozen=True, eq=False)
 class Optimum:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from scipy.special import softmax
 
 from disorder_landscape.inference.checkpoint import Cache, uncached
-from disorder_landscape.inference.optimum import Optimum, best, shares
+from disorder_landscape.inference.optimum import NEGLIGIBLE, Optimum, best, shares
 from disorder_landscape.inference.posterior import proposal
 from disorder_landscape.inference.posterior.importance_sampling import (
     ImportanceSamples,
@@ -41,8 +41,6 @@ MOST_UNKNOWNS = 64
 are as few as 16 even with weights to the power 0.29, and ten iterations take half an hour and are
 not enough. (That wire's truth is where Laplace's approximation has it: 180 error bars squared away,
 and 143 above the optimum in −2 log(posterior). So it is of five such wires in eight.)"""
-NEGLIGIBLE = 1e-3
-"""Optima with less than this share of the posterior are left out."""
 
 
 def posterior_samples(

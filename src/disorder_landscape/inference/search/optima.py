@@ -13,7 +13,15 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
-from disorder_landscape.inference.optimum import Optimum, best, optimum_at, same_answer, unseen
+from disorder_landscape.inference.optimum import (
+    NEGLIGIBLE,
+    Optimum,
+    best,
+    optimum_at,
+    same_answer,
+    shares,
+    unseen,
+)
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.search.gauss_newton import Goal
@@ -107,6 +115,23 @@ class Optima:
                 return k
         self.found.append(new)
         return len(self.found) - 1
+
+    def of(self, observation: Observation) -> Optima:
+        """Return the optima of more data, to which steps from these lead where they have a share.
+
+        Where the best of them does not explain the data, none has.
+        """
+        if observation is self.observation:
+            return self
+        share, found = shares(self.found), []
+        for k, one in enumerate(self.found):
+            answer = one.answer
+            if self.fits and share[k] > NEGLIGIBLE:
+                answer = self.steps(
+                    observation, answer.mean, one.found_by[0], f"all.{k}", (), "optimum"
+                )
+            found.append(replace(optimum_at(observation, answer), found_by=one.found_by))
+        return replace(self, observation=observation, found=found)
 
     def found_again(self, k: int, attempt: int) -> None:
         """Note that another start leads to this one of those found."""
