@@ -123,7 +123,7 @@ def _optima(
     for k, start in enumerate(starts):
         make = partial(gauss_newton, observation, start.answer.mean, step)
         end = cached_gaussian(cache, f"{name}.{k}", make)
-        one = replace(optimum_at(observation, end), found_by=start.found_by)
+        one = optimum_at(observation, end, start.found_by)
         if not any(same_answer(observation, one, other) for other in found):
             found.append(one)
     return found

@@ -53,11 +53,13 @@ class Optimum:
         return 0.5 * float(np.linalg.slogdet(self.answer.covariance)[1] - self.objective)
 
 
-def optimum_at(observation: Observation, answer: Gaussian, attempt: int = 0) -> Optimum:
-    """Return the optimum where a start of an attempt has ended."""
+def optimum_at(
+    observation: Observation, answer: Gaussian, found_by: tuple[int, ...] = (0,)
+) -> Optimum:
+    """Return the optimum where starts of these attempts have ended."""
     data = observation.simulate(answer.mean[None])[0]
     height = float(objective(observation, answer.mean, data))
-    return Optimum(answer, data, height, chi_square_excess(observation, data), (attempt,))
+    return Optimum(answer, data, height, chi_square_excess(observation, data), found_by)
 
 
 def is_noise(excess: float) -> bool:

@@ -108,7 +108,7 @@ class Optima:
     def end_at(self, x: FloatArray, attempt: int, name: str, goal: Goal) -> int:
         """Do so for a start that has been counted, and return which of those found it is."""
         end = self.steps(self.observation, x, attempt, name, self.found, goal)
-        new = optimum_at(self.observation, end, attempt)
+        new = optimum_at(self.observation, end, (attempt,))
         for k, one in enumerate(self.found):
             if same_answer(self.observation, one, new):
                 self.found[k] = _better(one, new)
@@ -130,7 +130,7 @@ class Optima:
                 answer = self.steps(
                     observation, answer.mean, one.found_by[0], f"all.{k}", (), "optimum"
                 )
-            found.append(replace(optimum_at(observation, answer), found_by=one.found_by))
+            found.append(optimum_at(observation, answer, one.found_by))
         return replace(self, observation=observation, found=found)
 
     def found_again(self, k: int, attempt: int) -> None:

@@ -86,7 +86,7 @@ class Starts:
                 if leads_to is not None:
                     optima.found_again(leads_to, attempt)
                 return
-        near = optimum_at(self.some, end, attempt)
+        near = optimum_at(self.some, end)
         least = best([*known, near]).objective
         goes_on = near.fits and near.objective <= least + REACH
         leads_to = optima.end_at(end.mean, attempt, name, "optimum") if goes_on else None

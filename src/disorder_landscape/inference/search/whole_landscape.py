@@ -31,6 +31,7 @@ import numpy as np
 from disorder_landscape.inference.checkpoint import Cache, uncached
 from disorder_landscape.inference.optimum import Optimum, best, chi_square_excess, is_noise
 from disorder_landscape.inference.problem.observation import Observation
+from disorder_landscape.inference.search.gauss_newton import Goal
 from disorder_landscape.inference.search.optima import Optima, Steps
 from disorder_landscape.model.parameters import FloatArray
 
@@ -65,13 +66,13 @@ def optima_of_whole_landscape(
     optima = Optima(in_fields, steps, STARTS)
     for number in range(WAYS_DOWN):
         way = _Way(in_fields, some, steps, seed, (number,), cache)
-        x, explains = way.down()
-        optima.start_at(x, number, "optimum" if explains else "place")
+        x, goal = way.down()
+        optima.start_at(x, number, goal)
         until = optima.starts + STARTS[1] - 1
         while optima.fits and not optima.is_settled and optima.starts < until:
             again = replace(way, name=(number, optima.starts))
-            x, explains = again.from_optimum(best(optima.found))
-            optima.start_at(x, number, "optimum" if explains else "place")
+            x, goal = again.from_optimum(best(optima.found))
+            optima.start_at(x, number, goal)
         if optima.fits:
             break
     return optima.of(observation), number + 1
@@ -79,7 +80,7 @@ def optima_of_whole_landscape(
 
 @dataclass(frozen=True)
 class _Way:
-    """A way over lower and lower μ.
+    """A way over lower and lower μ: to unknowns, and what steps with all data may reach from there.
 
     Each of its parts has random numbers of its own, so that an interrupted search goes on alike.
     """
@@ -91,20 +92,20 @@ class _Way:
     name: tuple[int, ...]
     cache: Cache
 
-    def down(self) -> tuple[FloatArray, bool]:
-        """Go down from V = 0 or a draw of the prior: unknowns, and whether they explain all μ."""
+    def down(self) -> tuple[FloatArray, Goal]:
+        """Go down from V = 0 or a draw of the prior."""
         prior = self.observation.unknowns.prior
         x = prior.mean if self.name == (0,) else prior.draw(self._rng(), 2)[0]
         return self._over(LINES, x)
 
-    def from_optimum(self, optimum: Optimum) -> tuple[FloatArray, bool]:
-        """Leave an optimum, and go down from there: unknowns, and whether they explain all μ."""
+    def from_optimum(self, optimum: Optimum) -> tuple[FloatArray, Goal]:
+        """Leave an optimum, and go down from there."""
         first = AGAIN[self.name[-1] % len(AGAIN)]
         x = self._better(self._draw(first, self._rng()), optimum.answer.mean, None)
         return self._over(range(first, LINES.stop, LINES.step), x)
 
-    def _over(self, counts: range, x: FloatArray) -> tuple[FloatArray, bool]:
-        """Return unknowns (unknown,), and whether they explain data of all μ."""
+    def _over(self, counts: range, x: FloatArray) -> tuple[FloatArray, Goal]:
+        """Return unknowns (unknown,): near an optimum, if they explain data of all μ."""
         for lines in counts:
             x, foretells = self._foretell(lines, x, lines)
         for part in range(LINES.stop, LINES.stop + BACK):
@@ -112,9 +113,9 @@ class _Way:
                 break
             x = self._better(self.some, x, f"{part}.some")
             if is_noise(_excess(self.some, x)):
-                return x, True
+                return x, "optimum"
             x, foretells = self._foretell(LINES[-1], x, part)
-        return x, False
+        return x, "place"
 
     def _foretell(self, lines: int, x: FloatArray, part: int) -> tuple[FloatArray, bool]:
         """Take steps with draws of so many lines until some need none; whether they do."""
