@@ -20,7 +20,7 @@ import numpy as np
 import xarray as xr
 
 from disorder_landscape.inference.checkpoint import Cache, cached_gaussian, uncached
-from disorder_landscape.inference.optimum import Optimum, best, optimum_at, same_answer
+from disorder_landscape.inference.optimum import Optimum, add, best, optimum_at
 from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.posterior.samples import posterior_samples
 from disorder_landscape.inference.problem.observation import Observation
@@ -123,7 +123,5 @@ def _optima(
     for k, start in enumerate(starts):
         make = partial(gauss_newton, observation, start.answer.mean, step)
         end = cached_gaussian(cache, f"{name}.{k}", make)
-        one = optimum_at(observation, end, start.found_by)
-        if not any(same_answer(observation, one, other) for other in found):
-            found.append(one)
+        add(observation, found, optimum_at(observation, end, start.found_by))
     return found

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import softmax
@@ -22,7 +22,9 @@ mean."""
 SAME_ANSWER = 2.0
 """Two optima are the same if they are closer than this many of their standard deviations, root mean
 square over the principal axes. (Where the posterior bends they differ by about one.)"""
-
+AS_GOOD = 3.0
+"""Starts have led to one optimum where they end with −2 log(posterior) no further apart than this.
+(Ends that error bars allow to be the same may be 80 apart where there are 150 unknowns.)"""
 NEGLIGIBLE = 1e-3
 """Optima with less than this share of the posterior are left out of it."""
 
@@ -106,6 +108,22 @@ def same_answer(observation: Observation, one: Optimum, other: Optimum) -> bool:
     scatter = max(1.0, misfit(observation, one))
     squares = one.answer.squared_distance(other.answer.mean) / one.answer.mean.size
     return bool(squares < (SAME_ANSWER * scatter) ** 2)
+
+
+def add(observation: Observation, found: list[Optimum], new: Optimum) -> int:
+    """Add an optimum to those found, and return which of them it is.
+
+    Of two that are the same the better one stays.
+    """
+    for k, one in enumerate(found):
+        if same_answer(observation, one, new):
+            better = best([one, new])
+            if abs(one.objective - new.objective) <= AS_GOOD:
+                better = replace(better, found_by=one.found_by + new.found_by)
+            found[k] = better
+            return k
+    found.append(new)
+    return len(found) - 1
 
 
 def misfit(observation: Observation, optimum: Optimum) -> float:

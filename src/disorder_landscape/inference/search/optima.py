@@ -16,9 +16,9 @@ from dataclasses import dataclass, field, replace
 from disorder_landscape.inference.optimum import (
     NEGLIGIBLE,
     Optimum,
+    add,
     best,
     optimum_at,
-    same_answer,
     shares,
     unseen,
 )
@@ -32,9 +32,6 @@ AGREEING = 2, 3
 """How many starts must lead to the best optimum: where the noise is so small that an answer that
 fits is right all but surely, and otherwise. (Of thirteen such wires without noise, one start ended
 4 µeV off and fitted.)"""
-AS_GOOD = 3.0
-"""They have led to one optimum where they end with −2 log(posterior) no further apart than this.
-(Ends that error bars allow to be the same may be 80 apart where there are 150 unknowns.)"""
 WIDE = 1.0
 """The posterior may have several maxima if the noise may hide them and V is uncertain by more than
 this many kT. …"""
@@ -108,13 +105,7 @@ class Optima:
     def end_at(self, x: FloatArray, attempt: int, name: str, goal: Goal) -> int:
         """Do so for a start that has been counted, and return which of those found it is."""
         end = self.steps(self.observation, x, attempt, name, self.found, goal)
-        new = optimum_at(self.observation, end, (attempt,))
-        for k, one in enumerate(self.found):
-            if same_answer(self.observation, one, new):
-                self.found[k] = _better(one, new)
-                return k
-        self.found.append(new)
-        return len(self.found) - 1
+        return add(self.observation, self.found, optimum_at(self.observation, end, (attempt,)))
 
     def of(self, observation: Observation) -> Optima:
         """Return the optima of more data, to which steps from these lead where they have a share.
@@ -123,25 +114,17 @@ class Optima:
         """
         if observation is self.observation:
             return self
-        share, found = shares(self.found), []
+        share, found = shares(self.found), list[Optimum]()
         for k, one in enumerate(self.found):
             answer = one.answer
             if self.fits and share[k] > NEGLIGIBLE:
                 answer = self.steps(
                     observation, answer.mean, one.found_by[0], f"all.{k}", (), "optimum"
                 )
-            found.append(optimum_at(observation, answer, one.found_by))
+            add(observation, found, optimum_at(observation, answer, one.found_by))
         return replace(self, observation=observation, found=found)
 
     def found_again(self, k: int, attempt: int) -> None:
         """Note that another start leads to this one of those found."""
         one = self.found[k]
         self.found[k] = replace(one, found_by=(*one.found_by, attempt))
-
-
-def _better(one: Optimum, other: Optimum) -> Optimum:
-    """Return the better of two optima that are the same, and which starts have led to it."""
-    better = best([one, other])
-    if abs(one.objective - other.objective) > AS_GOOD:
-        return better
-    return replace(better, found_by=one.found_by + other.found_by)
