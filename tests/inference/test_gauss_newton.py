@@ -9,6 +9,7 @@ from disorder_landscape.inference.optimum import optimum_at
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.search.gauss_newton import (
     CREEPING,
+    FEW_STEPS,
     LATELY,
     gauss_newton,
     linearise,
@@ -62,7 +63,7 @@ def test_steps_that_creep_end_where_only_a_place_is_asked_for():
 
     gorge = Gorge(200 * np.eye(40)[0], np.empty(0), variance=np.full(40, 0.1**2))
     steps = {}
-    for goal in ("optimum", "place"):
+    for goal in ("optimum", "place", "few"):
         count = []
         gauss_newton(gorge, np.zeros(SIZE), lambda *step, c=count: c.append(step[1]), (), goal)
         steps[goal] = count
@@ -70,6 +71,7 @@ def test_steps_that_creep_end_where_only_a_place_is_asked_for():
     assert len(rough) == LATELY < len(steps["optimum"])
     assert rough == steps["optimum"][: len(rough)]
     assert rough[-1] ** 2 > CREEPING * rough[0] ** 2
+    assert steps["few"] == rough[:FEW_STEPS]
 
 
 def test_slopes_are_the_derivatives(linear):

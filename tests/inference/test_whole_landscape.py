@@ -118,7 +118,7 @@ def test_steps_go_from_few_data_to_all_until_ways_agree(whole):
     optima, ways = optima_of_whole_landscape(whole, steps, 0)
     expected = []
     for start, way in enumerate(["way.0", *(f"way.0.{k}" for k in range(1, STARTS[0]))]):
-        expected += [(None, "better"), (f"{way}.{LINES.stop}.some", "better")]
+        expected += [(None, "few"), (f"{way}.{LINES.stop}.some", "better")]
         expected += [(f"0.{start}", "optimum")]
     assert asked == [*expected, ("all.0", "optimum")]
     assert ways == 1
@@ -162,7 +162,7 @@ def test_other_ways_down_are_tried_from_draws_of_the_prior(whole, far):
         if not names or names[-1] is not None:
             begun.append(x)
         names.append(name)
-        assert goal == ("better" if name is None else "place")
+        assert goal == ("few" if name is None else "place")
         return far
 
     optima, ways = optima_of_whole_landscape(whole, steps, 0)

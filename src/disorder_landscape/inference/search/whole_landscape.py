@@ -9,7 +9,9 @@ other data seldom have one. So steps go on and on with other data: few points of
 drawn anew whenever steps have come to an end (as stochastic gradients do: Robbins and Monro, Ann.
 Math. Stat. 22, 400 (1951)). They take lower μ only when V foretells draws: explains data that no
 step has used. (Where they went on as soon as V explained a draw that steps had used, one wire of
-three was lost.)
+three was lost.) A draw is worth few steps: with three of them instead of as many as lead to an
+optimum, first ways of six wires ended at −2 log of the posterior density 0, 3, 0, 0, 83 and 14
+above the truth's optimum instead of 0, 18, 16, 0, 83 and 94, in 1.1 times the time.
 
 At B = 0 slopes in closed form often fail. (One such μ of 48 takes three quarters of the time of a
 step with all 480 sets.) So the search leaves it out, and adds it to the optima at last.
@@ -101,7 +103,7 @@ class _Way:
     def from_optimum(self, optimum: Optimum) -> tuple[FloatArray, Goal]:
         """Leave an optimum, and go down from there."""
         first = AGAIN[self.name[-1] % len(AGAIN)]
-        x = self._better(self._draw(first, self._rng()), optimum.answer.mean, None)
+        x = self._nearer(self._draw(first, self._rng()), optimum.answer.mean)
         return self._over(range(first, LINES.stop, LINES.step), x)
 
     def _over(self, counts: range, x: FloatArray) -> tuple[FloatArray, Goal]:
@@ -111,7 +113,8 @@ class _Way:
         for part in range(LINES.stop, LINES.stop + BACK):
             if not foretells:
                 break
-            x = self._better(self.some, x, f"{part}.some")
+            name = f"{self._prefix}.{part}.some"
+            x = self.steps(self.some, x, self.name[0], name, (), "better").mean
             if is_noise(_excess(self.some, x)):
                 return x, "optimum"
             x, foretells = self._foretell(LINES[-1], x, part)
@@ -133,7 +136,7 @@ class _Way:
             part = self._draw(lines, rng)
             if _excess(part, x) > foretold:
                 left = in_a_row
-                x = self._better(part, x, None)
+                x = self._nearer(part, x)
                 continue
             left -= 1
             if left == 0:
@@ -143,9 +146,8 @@ class _Way:
     def _draw(self, lines: int, rng: np.random.Generator) -> Observation:
         return self.observation.on_random_points(lines / FEW[0], (lines, *FEW[1:]), rng)
 
-    def _better(self, part: Observation, x: FloatArray, name: str | None) -> FloatArray:
-        full = None if name is None else f"{self._prefix}.{name}"
-        return self.steps(part, x, self.name[0], full, (), "better").mean
+    def _nearer(self, part: Observation, x: FloatArray) -> FloatArray:
+        return self.steps(part, x, self.name[0], None, (), "few").mean
 
     @property
     def _prefix(self) -> str:
