@@ -60,7 +60,7 @@ from disorder_landscape.model.parameters import TEMPERATURE, Nanowire
 SAMPLES = 64
 PAPERS_SETTINGS = {"theta": 0.0, "barrier": Nanowire.barrier, "temperature": TEMPERATURE}
 """Where neither the prior nor the measurement says anything."""
-SEARCH = 6
+SEARCH = 7
 """Number of the search's version. What an interrupted run of another one has found is of no use."""
 Model = str | Path | TrainedModel
 

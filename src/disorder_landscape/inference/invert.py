@@ -112,7 +112,8 @@ def _optima_of_few_unknowns(
     if model is not None:
         rng = np.random.default_rng([seed, 2**31])
         guess = cached_gaussian(cache, "guess", partial(network_guess, model, observation, rng))
-    starts = Starts(Optima(observation, steps), np.random.default_rng([seed, 2**31 + 3]))
+    rng = np.random.default_rng([seed, 2**31 + 3])
+    starts = Starts(Optima(observation, steps), rng, cache)
     count = 0
     for number in range(settings.attempts):
         start = guess if guess is not None and number == 0 else prior

@@ -1,8 +1,6 @@
-"""From a start to an optimum of few unknowns, by steps with few data first.
+"""From a start to an optimum of few unknowns, by steps with some of the data first.
 
-Few data have fewer minima than many. And at a minimum of some data that is not near the true V,
-others seldom have one. So steps from a start take a few lines of the data, then more of them, drawn
-anew for each start, and lead out of minima in which steps with the same data all the time end.
+Where the noise may hide optima, a start is the best of many draws.
 """
 
 from __future__ import annotations
@@ -11,22 +9,20 @@ from dataclasses import InitVar, dataclass, field
 
 import numpy as np
 
+from disorder_landscape.inference.checkpoint import Cache, uncached
 from disorder_landscape.inference.optimum import Optimum, best, optimum_at
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.observation import Observation
+from disorder_landscape.inference.search.best_of_draws import best_of_draws
 from disorder_landscape.inference.search.gauss_newton import is_near
 from disorder_landscape.inference.search.optima import Optima
 from disorder_landscape.inference.verdict import is_surely_right
 from disorder_landscape.model.parameters import FloatArray
 
-DRAWN = 0.04, 0.1
-"""Shares of the data that are drawn for each start, and used one after the other. (Of three
-wires of 5+1 components at 0.1 e²/h, 36 starts with a quarter first led to the best optimum twice,
-and ten times with 4, 7, 16, 36 and 87 % first.)"""
 SHARE = 0.25
-"""Of the data that steps use then, which are the same for all starts."""
-FEWEST = 3, 7
-"""Lines of μ and of B that those that are drawn have at least, and those that are the same."""
+"""Of the data that steps use first, which are the same for all starts."""
+FEWEST = 7
+"""Lines of μ and of B that these have at least."""
 STARTS = 2, 4
 """So many starts about a distribution, if none has led to an optimum that fits, or if one has."""
 NEARBY = 0.2
@@ -46,17 +42,20 @@ class Starts:
     optima : Optima
         To which the optima are added.
     rng : Generator
-        Which data are the same for all starts.
+        Which data come first.
+    cache : callable, optional
+        `Checkpoint.cached`.
     """
 
     optima: Optima
     rng: InitVar[np.random.Generator]
+    cache: Cache = uncached
     some: Observation = field(init=False)
     _on_some: list[tuple[Optimum, int | None]] = field(default_factory=list)
     """Optima on these data, and which one of all data they lead to, if any."""
 
     def __post_init__(self, rng: np.random.Generator) -> None:
-        self.some = self.optima.observation.on_some_lines(SHARE, FEWEST[1], rng)
+        self.some = self.optima.observation.on_some_lines(SHARE, FEWEST, rng)
 
     def start_about(self, found: Gaussian, attempt: int, rng: np.random.Generator) -> None:
         """Let steps start at the mean of a distribution, and at draws from it."""
@@ -66,19 +65,23 @@ class Starts:
             fits = optima.fits
             if tried >= (more if fits else few) and not (fits and optima.is_wide):
                 return
-            about = found
-            if fits and is_surely_right(optima.observation):
-                about = Gaussian(best(optima.found).answer.mean, NEARBY**2 * found.covariance)
-            self.start_from(found.mean if tried == 0 else about.draw(rng, 2)[0], attempt, rng)
+            (own,) = rng.spawn(1)
+            if tried == 0:
+                x = found.mean
+            elif fits and is_surely_right(optima.observation):
+                near = Gaussian(best(optima.found).answer.mean, NEARBY**2 * found.covariance)
+                x = near.draw(own, 2)[0]
+            elif fits and optima.is_wide:
+                x = self._best_of_draws(found, own)
+            else:
+                x = found.draw(own, 2)[0]
+            self.start_from(x, attempt)
             tried += 1
 
-    def start_from(self, x: FloatArray, attempt: int, rng: np.random.Generator) -> None:
+    def start_from(self, x: FloatArray, attempt: int) -> None:
         """Find the optimum that steps from x (unknown,) lead to."""
         optima, steps = self.optima, self.optima.steps
         name = optima.count_start(attempt)
-        for number, share in enumerate(DRAWN):
-            drawn = optima.observation.on_some_lines(share, FEWEST[0], rng)
-            x = steps(drawn, x, attempt, f"{name}.drawn.{number}", (), "place").mean
         known = [one for one, _ in self._on_some]
         end = steps(self.some, x, attempt, f"{name}.some", known, "place")
         for one, leads_to in self._on_some:
@@ -91,3 +94,9 @@ class Starts:
         goes_on = near.fits and near.objective <= least + REACH
         leads_to = optima.end_at(end.mean, attempt, name, "optimum") if goes_on else None
         self._on_some.append((near, leads_to))
+
+    def _best_of_draws(self, about: Gaussian, rng: np.random.Generator) -> FloatArray:
+        def make() -> dict[str, list[float]]:
+            return {"x": best_of_draws(self.optima.observation, about, rng).tolist()}
+
+        return np.array(self.cache(f"start.{self.optima.starts}", make)["x"])
