@@ -35,7 +35,9 @@ time.)"""
 STEPS = 30
 """At most, …"""
 FEW_STEPS = 3
-"""… or where few are asked for."""
+"""… or where few are asked for. (With so many for a draw of data, instead of as many as lead to an
+optimum, first ways to the whole landscape of six wires ended 0, 3, 0, 0, 83 and 14 above the
+truth's optimum in −2 log(posterior), instead of 0, 18, 16, 0, 83 and 94, in 1.1 times the time.)"""
 DAMPING = 4.0, 1e-2, 1e6
 """Factor, first and largest value of Levenberg's and Marquardt's damping."""
 ENOUGH = 0.3
