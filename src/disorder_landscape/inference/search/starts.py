@@ -63,7 +63,8 @@ class Starts:
         tried = 0
         while not optima.is_done:
             fits = optima.fits
-            if tried >= (more if fits else few) and not (fits and optima.is_wide):
+            is_wide = fits and optima.is_wide
+            if tried >= (more if fits else few) and not is_wide:
                 return
             (own,) = rng.spawn(1)
             if tried == 0:
@@ -71,7 +72,7 @@ class Starts:
             elif fits and is_surely_right(optima.observation):
                 near = Gaussian(best(optima.found).answer.mean, NEARBY**2 * found.covariance)
                 x = near.draw(own, 2)[0]
-            elif fits and optima.is_wide:
+            elif is_wide:
                 x = self._best_of_draws(found, own)
             else:
                 x = found.draw(own, 2)[0]
