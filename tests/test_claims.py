@@ -411,7 +411,7 @@ def test_half_of_the_filters_is_derived_from_the_widths(tmp_path):
         (n, 100, width, seed, 0.77 - loss * (width == 0.5) + 0.01 * seed)
         for n, loss in ((3, 0.002), (4, 0.001), (5, 0.006), (7, 0.003), (8, 0.004))
         for width in (0.5, 1.0)
-        for seed in (0, 1)
+        for seed in (0, 1, 2)
     ]
     write_table(tmp_path / "network_width.csv", trainings([*rows, (10, 100, 1.0, 0, 0.7)]))
     loss = DERIVED["loss_of_halving"](tmp_path / "network_width.csv")
@@ -419,6 +419,8 @@ def test_half_of_the_filters_is_derived_from_the_widths(tmp_path):
     assert loss.interval == pytest.approx((0.006, 0.006))  # seeds move both widths alike
     p = DERIVED["halving_independent_of_components"](tmp_path / "network_width.csv")
     assert p.value == pytest.approx(42 / 120)  # orders of five whose |ρ| is at least 0.6
+    write_table(tmp_path / "two_seeds.csv", trainings([row for row in rows if row[3] < 2]))
+    assert DERIVED["loss_of_halving"](tmp_path / "two_seeds.csv").interval is None
 
 
 @pytest.mark.parametrize("name", DERIVED)

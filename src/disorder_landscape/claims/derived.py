@@ -15,7 +15,7 @@ import pandas as pd
 from scipy.stats import permutation_test, spearmanr
 
 from disorder_landscape.claims.claim import ResultMissingError
-from disorder_landscape.claims.value import Value, with_resampled
+from disorder_landscape.claims.value import FEWEST_SEEDS, Value, with_resampled
 from disorder_landscape.inference.verdict import CONVERGED
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.studies.components import THIRTY_COMPONENTS
@@ -84,9 +84,12 @@ def gain_of_last_step(table: Path) -> Value:
 def loss_of_halving(table: Path) -> Value:
     """Return the largest loss of R² by half of the filters, over component counts."""
     losses = _losses_of_halving(table)
+    largest = max(float(of.mean()) for of in losses.values())
+    if min(of.size for of in losses.values()) < FEWEST_SEEDS:
+        return Value(largest)
     rng = np.random.default_rng(0)
     means = [rng.choice(of, (DRAWS, of.size)).mean(axis=1) for of in losses.values()]
-    return with_resampled(max(of.mean() for of in losses.values()), np.max(means, axis=0))
+    return with_resampled(largest, np.max(means, axis=0))
 
 
 def halving_independent_of_components(table: Path) -> Value:
