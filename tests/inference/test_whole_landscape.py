@@ -68,6 +68,28 @@ def test_random_points_are_of_the_highest_mu_that_are_measured():
     assert observation.on_random_points(0.01, (1, 1, 1), rng).measurement.mu == MU[11]
 
 
+def test_some_lines_are_of_what_is_measured():
+    G = np.zeros_like(NOTHING.G)
+    G[:6] = np.nan
+    observation = Observation(replace(NOTHING, G=G), UNKNOWNS, np.ones(4))
+    rng = np.random.default_rng(0)
+    for share in (0.1, 0.3):
+        some = observation.on_some_lines(share, 2, rng)
+        assert share / 2 <= some.data.size / observation.data.size <= 4 * share
+        assert set(some.measurement.mu) <= set(MU[6:])
+        assert some.data.size == some.measurement.G.size
+
+
+def test_all_data_are_taken_where_no_lines_hold_enough():
+    G = np.full((12, 12, 5, 4), np.nan)
+    G[np.arange(12), np.arange(12)] = 0
+    diagonal = replace(NOTHING, G=G, B=np.linspace(0, 0.8, 12))
+    observation = Observation(diagonal, UNKNOWNS, np.ones(4))
+    parts = [observation.on_some_lines(0.01, 1, np.random.default_rng(seed)) for seed in range(20)]
+    assert {part.data.size for part in parts} == {20, 240}
+    assert all(part is observation for part in parts if part.data.size == 240)
+
+
 def test_few_points_are_spread_over_what_is_measured():
     G = np.zeros_like(NOTHING.G)
     G[[0, 1]] = np.nan

@@ -22,22 +22,28 @@ from disorder_landscape.inference.verdict import is_surely_right
 USUAL_STEPS = {ROUND: 4, GAUSS_NEWTON: 8, IMPORTANCE_SAMPLING: 3, MAPS: 1}
 """How many most inversions take, of about one length: what the time left is estimated from."""
 
-WIRES_PER_UNKNOWN = 12, 35
+WIRES_PER_UNKNOWN = 12, 35, 220
 """How many times all data of a wire are simulated for each unknown: where an answer that fits is
-surely right, and otherwise. Means of inversions of 5+1 and ten components with noise of 0.001 and
-of 0.01 e²/h; single ones take a third to twice that. With 0.05 e²/h they take twice that, too."""
-WIRES_OF_LANDSCAPE = 600
-"""The same of a whole landscape, however many unknowns it has, where disorder is weak or the wire
-is short; four times that where it is neither, and more if the search has to begin anew."""
+surely right; otherwise; and from OFTEN_WIDE on. Means of inversions of 5+1 and ten components with
+noise of 0.001 and of 0.01 e²/h, and of 5+1 with 0.1; single ones take a third to twice that."""
+OFTEN_WIDE = 0.03
+"""Noise in e²/h with which most wires' posterior may have several maxima (`Optima.is_wide`)."""
+WIRES_OF_LANDSCAPE = 2000
+"""The same of a whole landscape, however many unknowns it has; a quarter of that where disorder is
+weak or the wire is short. (Of eight wires of the paper's disorder, single ones take 1,300 to
+3,500.)"""
 
 
 def announce_inference(observation: Observation) -> None:
     """Say how long an inversion will take, after simulating what is measured for a second."""
     prior = observation.unknowns.prior.mean
-    once, twice = WIRES_PER_UNKNOWN
-    wires = prior.size * (once if is_surely_right(observation) else twice)
+    once, twice, wide = WIRES_PER_UNKNOWN
     if observation.unknowns.is_whole_landscape:
         wires = WIRES_OF_LANDSCAPE
+    elif is_surely_right(observation):
+        wires = prior.size * once
+    else:
+        wires = prior.size * (wide if observation.noise.mean() >= OFTEN_WIDE else twice)
     announce_repeated("infer", lambda k: observation.simulate(prior[None]), wires)
 
 

@@ -24,6 +24,8 @@ used: some two in a hundred. (With all of them one answer of ten at 0.001 e²/h 
 were half of what they should be along one direction.)"""
 TRUSTED_NEAR_GAP = 3e-2
 """The same where the thermal window reaches the gap: the estimate is that of ∂/∂Δ₀ there."""
+DRAWS_OF_LINES = 10
+"""Of some of the data, where many are missing."""
 POINTS_AT_ONCE = 4
 """Chemical potentials at which derivatives by all sites are in memory together."""
 
@@ -83,15 +85,20 @@ class Observation:
     def on_some_lines(self, share: float, fewest: int, rng: np.random.Generator) -> Observation:
         """Return an observation of random lines of μ and B, which hold this share of the data.
 
-        Grids of up to so many lines stay whole, and those where too many data are missing.
+        Lines on which nothing was measured do not count. Grids of up to so many lines stay whole,
+        and those with such gaps that no lines of several draws hold half of that share.
         """
-        m = self.measurement
-        mu, B = (
-            np.sort(rng.choice(n, max(min(fewest, n), round(n * np.sqrt(share))), replace=False))
-            for n in (m.mu.size, m.B.size)
-        )
-        part = self.at(mu, B, np.arange(m.bias.size))
-        return part if part.data.size >= share * self.data.size / 2 else self
+        axes = [self._measured_along(axis) for axis in range(2)]
+        counts = [max(min(fewest, n), round(n * np.sqrt(share))) for n in map(len, axes)]
+        for _ in range(DRAWS_OF_LINES):
+            mu, B = (
+                np.sort(rng.choice(axis, count, replace=False))
+                for axis, count in zip(axes, counts, strict=True)
+            )
+            part = self.at(mu, B, np.arange(self.measurement.bias.size))
+            if part.data.size >= share * self.data.size / 2:
+                return part
+        return self
 
     def on_few_points(self, *counts: int) -> Observation:
         """Return an observation of so many points of μ, B and bias at most, evenly spread.
