@@ -28,10 +28,10 @@ surely right; otherwise; and from OFTEN_WIDE on. Means of inversions of 5+1 and 
 noise of 0.001 and of 0.01 e²/h, and of 5+1 with 0.1; single ones take a third to twice that."""
 OFTEN_WIDE = 0.03
 """Noise in e²/h with which most wires' posterior may have several maxima (`Optima.is_wide`)."""
-WIRES_OF_LANDSCAPE = 2000
+WIRES_OF_LANDSCAPE = 3000
 """The same of a whole landscape, however many unknowns it has; a quarter of that where disorder is
-weak or the wire is short. (Of eight wires of the paper's disorder, single ones take 1,300 to
-3,500.)"""
+weak or the wire is short. (Of eight wires of the paper's disorder, single ones take 2,000 to
+5,500.)"""
 
 
 def announce_inference(observation: Observation) -> None:
