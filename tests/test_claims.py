@@ -33,6 +33,7 @@ from disorder_landscape.config import Config
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.learning.scaling import LabelScaler
 from disorder_landscape.model.disorder import disorder_realization
+from disorder_landscape.observables import topological_overlap
 from disorder_landscape.studies.plan import study_names
 from disorder_landscape.studies.rows import as_text, write_rows
 from disorder_landscape.studies.trainings_table import Result
@@ -644,7 +645,7 @@ def oracle(monkeypatch):
     network = Oracle(scaler.scale(Y))
     trained = TrainedModel(network, scaler, None, config)
     monkeypatch.setattr(measurements_of_models, "_loaded", lambda model: (test, trained))
-    monkeypatch.setattr(measurements_of_models, "VISIBILITY_POINTS", (5, 9))
+    monkeypatch.setattr(topological_overlap, "POINTS", (5, 9))
     return network
 
 

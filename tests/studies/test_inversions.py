@@ -12,7 +12,12 @@ from scipy.stats import chi2
 from disorder_landscape import ArgumentError
 from disorder_landscape.chain import FIVE, TEN, THIRTY, shipped_model
 from disorder_landscape.claims.claim import ResultMissingError
-from disorder_landscape.claims.derived import fixed_combinations, thirty_components, true_answers
+from disorder_landscape.claims.derived import (
+    fixed_combinations,
+    thirty_components,
+    true_answers,
+    visibility_of_inversions,
+)
 from disorder_landscape.claims.study_tables import (
     SHOWN,
     accuracy_table,
@@ -322,6 +327,17 @@ def test_claims_of_uniqueness(information, tmp_path):
     table.loc[table["noise"] == 0.01, "fixed"] = [4, 3]
     table.to_csv(path, index=False)
     assert fixed_combinations(path).value == 0.75
+
+
+def test_visibility_is_of_all_answers_for_ten_components(tmp_path):
+    path = tmp_path / "rows.csv"
+    shown = {"both_topological": 30, "either_topological": 40}
+    write_table(path, [row(0) | shown, row(0, model=TEN, noise=0.1) | shown])
+    with pytest.raises(ResultMissingError, match="ten components"):
+        visibility_of_inversions(path)
+    more = {"both_topological": 60, "either_topological": 60}
+    write_table(path, [row(0, model=TEN) | shown, row(1, model=TEN) | more, row(2, model=TEN)])
+    assert visibility_of_inversions(path).value == pytest.approx(0.9)
 
 
 def test_coverage_of_normal_deviations_is_nominal():

@@ -14,6 +14,7 @@ import numpy as np
 import pandas as pd
 from scipy.stats import permutation_test, spearmanr
 
+from disorder_landscape.chain import TEN
 from disorder_landscape.claims.claim import ResultMissingError
 from disorder_landscape.claims.value import FEWEST_SEEDS, Value, with_resampled
 from disorder_landscape.inference.verdict import CONVERGED
@@ -118,6 +119,18 @@ def true_answers(table: Path) -> Value:
     return Value(float(1 - wrong(explained).mean()))
 
 
+def visibility_of_inversions(table: Path) -> Value:
+    """Return how well the answers for ten components are topological where the wires are.
+
+    At noise of SMALL_NOISE; as `visibility_match`.
+    """
+    rows = _rows(table, "either_topological").dropna(subset="either_topological")
+    some = rows[(rows["noise"] == SMALL_NOISE) & (rows["model"] == TEN)]
+    if some.empty:
+        raise ResultMissingError(f"{table.name} has no such wires of ten components yet")
+    return Value(float(some["both_topological"].sum() / some["either_topological"].sum()))
+
+
 def fixed_combinations(table: Path) -> Value:
     """Return the least part of the unknowns that data with SMALL_NOISE fix, over all settings."""
     rows = _rows(table, "fixed")
@@ -146,6 +159,7 @@ DERIVED: dict[str, Callable[[Path], Value]] = {
         loss_of_halving,
         halving_independent_of_components,
         true_answers,
+        visibility_of_inversions,
         fixed_combinations,
         thirty_components,
     )

@@ -18,11 +18,8 @@ from disorder_landscape.learning.prediction import predict
 from disorder_landscape.learning.scaling import conductance_array, label_array
 from disorder_landscape.model.parameters import FloatArray, Nanowire
 from disorder_landscape.observables.conductance import conductance
-from disorder_landscape.observables.visibility import topological_visibility
+from disorder_landscape.observables.topological_overlap import topological_points
 from disorder_landscape.studies.noise import CHANNELS_WITH_ERRORS, with_errors
-
-VISIBILITY_POINTS = 61, 81
-"""Grid of μ and B on which T_IV of inputs and predictions is compared."""
 
 
 def model_score(model: str, score: str, noise: float = 0.0, channels: str = "all") -> float:
@@ -67,19 +64,13 @@ def conductance_match(model: str, channels: str, mean: str) -> float:
 def visibility_match(model: str, mean: str) -> float:
     """Return how well predicted wires are topological where the wires themselves are.
 
-    The (μ, B) at which both are, over those at which either is: 1 if they agree everywhere, 0 if
-    nowhere. Topological is where T_IV of the left end is negative. Arguments as before.
+    The (μ, B) at which both are, over those at which either is (`topological_points`). Arguments as
+    before.
     """
     config = _loaded(model)[1].config.dataset
-    mu, B = (
-        np.linspace(0.0, end, points)
-        for end, points in zip((config.mu_max, config.B_max), VISIBILITY_POINTS, strict=True)
-    )
-    true, predicted = (
-        topological_visibility(wires, mu, B).sel(lead="L").to_numpy() < 0
-        for wires in (_test_wires(model), _predicted_wires(model, mean))
-    )
-    return float((true & predicted).sum() / (true | predicted).sum())
+    wires = _test_wires(model), _predicted_wires(model, mean)
+    both, either = topological_points(*wires, config.mu_max, config.B_max)
+    return both / either
 
 
 def sets_and_training_hours(model: str) -> tuple[int, float]:

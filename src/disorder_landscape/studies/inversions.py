@@ -11,6 +11,7 @@ from typing import Literal
 import numpy as np
 
 from disorder_landscape.inference.search.first_guess import network_labels
+from disorder_landscape.observables.topological_overlap import topological_points
 from disorder_landscape.studies.fresh_wires import (
     FreshWiresPlan,
     Task,
@@ -41,9 +42,9 @@ def inversion_row(task: Task) -> dict[str, object]:
     dict
         V errors in meV, root mean square over the sites; the errors of α in meV nm; `scaled_error`,
         the mean square error of the paper's labels in units of their variance, which is 1 − R²;
-        `z_scores` of the true unknowns (`Outcome.z_scores`);
-        `more_probable`, how much of the posterior is more probable than the truth; and the outcome
-        of `Inverted`.
+        `z_scores` of the true unknowns (`Outcome.z_scores`); `more_probable`, how much of the
+        posterior is more probable than the truth; at how many (μ, B) both the wire and the answer
+        are topological, and at how many either is; and the outcome of `Inverted`.
     """
     observation, truth = fresh_wire(task)
     unknowns, network = observation.unknowns, network_of(task.model, task.noise)
@@ -54,6 +55,9 @@ def inversion_row(task: Task) -> dict[str, object]:
     papers = np.array([name != "mean" for name in unknowns.names])
     true, answered, guessed = (unknowns.labels(x) for x in (truth, mean, guess))
     variance = unknowns.label_std**2
+    measured = observation.measurement
+    true_wire, wire = (d.wire for d in unknowns.devices(np.array([truth, mean]), measured))
+    both, either = topological_points([true_wire], [wire], measured.mu.max(), measured.B.max())
     row: dict[str, object] = {
         "model": task.model,
         "noise": task.noise,
@@ -65,6 +69,8 @@ def inversion_row(task: Task) -> dict[str, object]:
         "network_alpha_error": abs(alpha(guess) - alpha(truth)),
         "alpha_error": abs(alpha(mean) - alpha(truth)),
         "more_probable": more_probable(observation, found.found, truth),
+        "both_topological": both,
+        "either_topological": either,
         **found.outcome,
     }
     z_scores = found.found.z_scores(truth)
