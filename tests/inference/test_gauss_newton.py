@@ -74,6 +74,23 @@ def test_steps_that_creep_end_where_only_a_place_is_asked_for():
     assert steps["few"] == rough[:FEW_STEPS]
 
 
+def test_few_steps_ask_for_no_slopes_that_they_do_not_use():
+    class Bent(Linear):
+        slopes_asked_for = 0
+
+        def exact_slopes(self, x):
+            Bent.slopes_asked_for += 1
+            return super().exact_slopes(x)
+
+        def simulate(self, X):
+            return np.arctan(X @ self.slope)
+
+    bent = Bent(np.full(40, 1.2), np.eye(SIZE, 40), variance=np.full(40, 1e-4))
+    steps = []
+    gauss_newton(bent, np.zeros(SIZE), lambda *step: steps.append(step), (), "few")
+    assert Bent.slopes_asked_for == len(steps) == FEW_STEPS
+
+
 def test_slopes_are_the_derivatives(linear):
     value, slope = linearise(linear, np.ones(SIZE))
     np.testing.assert_allclose(value, linear.slope.sum(axis=0), rtol=1e-12)

@@ -77,15 +77,16 @@ def gauss_newton(
     known : sequence of Optimum
         Steps that come near one of these, and not below it, end there.
     goal : "optimum", "place", "better" or "few"
+        After few steps the covariance is that before the last one.
     """
     prior, variance = observation.unknowns.prior, observation.variance
     precision = np.linalg.inv(prior.covariance)
     x, (factor, first, largest) = start, DAMPING
-    roughly = goal != "optimum"
+    roughly, most = goal != "optimum", FEW_STEPS if goal == "few" else STEPS
     y, slope = linearise(observation, start, roughly)
     best, damping = float(objective(observation, x, y)), 0.0
     heights = [best]
-    for number in range(FEW_STEPS if goal == "few" else STEPS):
+    for number in range(most):
         information = precision_of(observation, slope)
         spread = observation.unknowns.site_std(np.asarray(np.linalg.inv(information), np.float64))
         progress(number, overall_misfit(observation, y), spread)
@@ -114,6 +115,8 @@ def gauss_newton(
             break
         if goal == "place" and _creep(observation, heights, y):
             break
+        if goal == "few" and number + 1 == most:
+            break  # its width is not asked for
         for one in known:
             if best > one.objective and is_near(one, x):
                 return one.answer
