@@ -16,43 +16,26 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from command import Request, figure_script
-from disorder_landscape.studies.crossings import R2_AIMED_AT
-from disorder_landscape.studies.trainings_table import read_table
 from figure_2_scaling import TABLES
-from plotting import FULL_WIDTH, inches, trainings
+from plotting import FULL_WIDTH, network_panels, trainings
 
 
 def data(request: Request) -> xr.Dataset:
     """Return network, components, realizations, seed and R2 of every training (training)."""
-    return xr.concat(
-        [
-            trainings(read_table(table), ["realizations"]).assign(network=name)
-            for name, table in TABLES.items()
-        ],
-        "training",
-        data_vars="all",
-    )
+    return trainings(TABLES, ["realizations"])
 
 
 def draw(data: xr.Dataset) -> Figure:
     """Draw the figure."""
     figure = Figure(figsize=(FULL_WIDTH, 2.8))
-    width = (FULL_WIDTH - 1.65) / 2
     numbers = np.unique(data["components"])
     colours = dict(
         zip(numbers, mpl.colormaps["viridis"](np.linspace(0.0, 0.9, len(numbers))), strict=True)
     )
     low = max(0.0, float(data["R2"].min()) - 0.05)
-    for i, network in enumerate(TABLES):
-        axes = inches(figure, 0.52 + i * (width + 0.12), 0.42, width, 2.1)
-        of_network = data.isel(training=np.flatnonzero(data["network"] == network))
+    for axes, of_network in network_panels(figure, data, "$R^2$ on test realizations", 1.01):
         _draw_curves(axes, of_network, colours)
-        axes.axhline(R2_AIMED_AT, color="0.4", ls=":", lw=1)
-        axes.set(xscale="log", xlabel="training realizations", ylim=(low, 1.0), title=network)
-        if i:
-            axes.tick_params(labelleft=False)
-        else:
-            axes.set_ylabel("$R^2$ on test realizations")
+        axes.set(xscale="log", xlabel="training realizations", ylim=(low, 1.0))
     handles = [mpl.lines.Line2D([], [], color=colour, lw=1) for colour in colours.values()]
     axes.legend(handles, numbers, title="components", loc="upper left", bbox_to_anchor=(1.0, 1.03))
     return figure

@@ -20,9 +20,7 @@ from matplotlib.ticker import FixedLocator, NullLocator
 
 from command import Request, figure_script
 from disorder_landscape.chain import REPOSITORY
-from disorder_landscape.studies.crossings import R2_AIMED_AT
-from disorder_landscape.studies.trainings_table import read_table
-from plotting import FULL_WIDTH, inches, trainings
+from plotting import FULL_WIDTH, network_panels, trainings
 
 SHIFT = 1.07
 """Of the outermost curves along the axis, a factor."""
@@ -35,32 +33,18 @@ TABLES = {
 
 def data(request: Request) -> xr.Dataset:
     """Return network, components, width_fraction, realizations, seed and R2 (training)."""
-    return xr.concat(
-        [
-            trainings(read_table(table), ["width_fraction", "realizations"]).assign(network=name)
-            for name, table in TABLES.items()
-        ],
-        "training",
-        data_vars="all",
-    )
+    return trainings(TABLES, ["width_fraction", "realizations"])
 
 
 def draw(data: xr.Dataset) -> Figure:
     """Draw the figure."""
     figure = Figure(figsize=(FULL_WIDTH, 2.8))
-    width = (FULL_WIDTH - 0.74) / 2
     low = float(data["R2"].min())
-    for i, network in enumerate(TABLES):
-        axes = inches(figure, 0.52 + i * (width + 0.12), 0.42, width, 2.1)
-        _draw_widths(axes, data.isel(training=np.flatnonzero(data["network"] == network)))
-        axes.axhline(R2_AIMED_AT, color="0.4", ls=":", lw=1)
-        axes.set(xlabel="fraction of the paper's filters", title=network)
+    for axes, of_network in network_panels(figure, data, "$R^2$", 0.1):
+        _draw_widths(axes, of_network)
+        axes.set_xlabel("fraction of the paper's filters")
         axes.set_ylim(low - 0.65 * (1 - low), 1.0)  # room for the legend
         axes.legend(title="components", loc="lower right")
-        if i:
-            axes.tick_params(labelleft=False)
-        else:
-            axes.set_ylabel("$R^2$")
     return figure
 
 

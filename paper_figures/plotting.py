@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
 
@@ -18,7 +18,8 @@ from matplotlib.colorbar import Colorbar
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from disorder_landscape.studies.trainings_table import Result
+from disorder_landscape.studies.crossings import R2_AIMED_AT
+from disorder_landscape.studies.trainings_table import read_table
 
 COLUMN, FULL_WIDTH = 3.404, 7.06
 """REVTeX's widths in inches."""
@@ -59,12 +60,33 @@ def inches(figure: Figure, left: float, bottom: float, width: float, height: flo
     return axes
 
 
-def trainings(results: Sequence[Result], names: Sequence[str]) -> xr.Dataset:
-    """Return some columns of a study's table, and components, seed and R2 (training)."""
+def trainings(tables: Mapping[str, Path], names: Sequence[str]) -> xr.Dataset:
+    """Return network, some columns, components, seed and R2 of all trainings (training).
+
+    Of the studies' tables of several networks.
+    """
     columns = ("components", *names, "seed", "R2")
-    return xr.Dataset(
-        {name: ("training", np.array([getattr(one, name) for one in results])) for name in columns}
-    )
+    found = [(network, one) for network, path in tables.items() for one in read_table(path)]
+    of_each = {name: np.array([getattr(one, name) for _, one in found]) for name in columns}
+    of_each["network"] = np.array([network for network, _ in found])
+    return xr.Dataset({name: ("training", values) for name, values in of_each.items()})
+
+
+def network_panels(
+    figure: Figure, data: xr.Dataset, ylabel: str, right: float
+) -> Iterator[tuple[Axes, xr.Dataset]]:
+    """Add axes for R² of two networks side by side; yield each with the trainings it is for.
+
+    Dotted is the R² of Fig. 2; so many inches are free to their right.
+    """
+    networks = list(dict.fromkeys(data["network"].to_numpy()))
+    width = (FULL_WIDTH - 0.64 - right) / 2
+    for i, network in enumerate(networks):
+        axes = inches(figure, 0.52 + i * (width + 0.12), 0.42, width, 2.1)
+        axes.set(title=network, ylabel="" if i else ylabel)
+        axes.tick_params(labelleft=not i)
+        axes.axhline(R2_AIMED_AT, color="0.4", ls=":", lw=1)
+        yield axes, data.isel(training=np.flatnonzero(data["network"] == network))
 
 
 def write(figure: Figure, left: float, top: float, text: str, ha: str = "left") -> None:
