@@ -91,10 +91,7 @@ class Observation:
         axes = [self._measured_along(axis) for axis in range(2)]
         counts = [max(min(fewest, n), round(n * np.sqrt(share))) for n in map(len, axes)]
         for _ in range(DRAWS_OF_LINES):
-            mu, B = (
-                np.sort(rng.choice(axis, count, replace=False))
-                for axis, count in zip(axes, counts, strict=True)
-            )
+            mu, B = _drawn(axes, counts, rng)
             part = self.at(mu, B, np.arange(self.measurement.bias.size))
             if part.data.size >= share * self.data.size / 2:
                 return part
@@ -128,11 +125,8 @@ class Observation:
         axes = [self._measured_along(axis) for axis in range(3)]
         upwards = axes[0][np.argsort(self.measurement.mu[axes[0]])]
         axes[0] = upwards[-int(np.ceil(highest * upwards.size)) :]
-        some = [
-            np.sort(rng.choice(axis, min(count, (axis.size + 1) // 2), replace=False))
-            for axis, count in zip(axes, counts, strict=True)
-        ]
-        return self.at(*some)
+        most = [min(n, (axis.size + 1) // 2) for axis, n in zip(axes, counts, strict=True)]
+        return self.at(*_drawn(axes, most, rng))
 
     def _measured_along(self, axis: int) -> NDArray[np.int64]:
         """Return at which points of μ, B or bias, the first three axes, anything was measured."""
@@ -201,6 +195,15 @@ class Observation:
         total = np.bincount(self.channel, squares, minlength=len(CONDUCTANCES))
         mean = np.divide(total, count, out=np.full(count.size, np.nan), where=count > 0)
         return np.asarray(np.sqrt(mean))
+
+
+def _drawn(
+    axes: Sequence[NDArray[np.int64]], counts: Sequence[int], rng: np.random.Generator
+) -> list[NDArray[np.int64]]:
+    """Return so many of each axis' points, drawn without replacement, in their order."""
+    return [
+        np.sort(rng.choice(axis, n, replace=False)) for axis, n in zip(axes, counts, strict=True)
+    ]
 
 
 def _closed_form_has_slopes(wire: Nanowire, at: Measurement) -> bool:

@@ -115,11 +115,11 @@ def gauss_newton(
             break
         if goal == "place" and _creep(observation, heights, y):
             break
-        if goal == "few" and number + 1 == most:
-            break  # its width is not asked for
         for one in known:
             if best > one.objective and is_near(one, x):
                 return one.answer
+        if goal == "few" and number + 1 == most:
+            break  # its width is not asked for
         slope = linearise(observation, x, roughly)[1]
         damping = 0.0 if damping <= first else damping / factor
     return laplace(observation, x, slope)
