@@ -1,7 +1,7 @@
 // Conductances and det r at T = 0, in the arithmetic that each wire and energy allow.
 #pragma once
 
-#include "tilted.hpp"
+#include "tilted/arithmetic.hpp"
 
 namespace core {
 

@@ -9,7 +9,7 @@
 
 #include "binding.hpp"
 #include "thermal/conductance.hpp"
-#include "tilted.hpp"
+#include "tilted/arithmetic.hpp"
 
 namespace core {
 

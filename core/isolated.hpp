@@ -4,7 +4,7 @@
 // With Im z > 0 no pivot can vanish, as no level is at z; the wires have no dissipation of their own.
 #pragma once
 
-#include "tilted.hpp"
+#include "tilted/arithmetic.hpp"
 
 namespace core {
 

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-#include "tilted.hpp"
+#include "tilted/arithmetic.hpp"
 
 namespace core {
 

@@ -4,8 +4,8 @@
 // adjoint, rounding included, so that no particle is lost to it.  Elsewhere M has no symmetry.
 #pragma once
 
-#include "conductance.hpp"
-#include "leads/tilted.hpp"
+#include "../conductance.hpp"
+#include "../leads/tilted.hpp"
 
 namespace core {
 
