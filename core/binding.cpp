@@ -20,6 +20,7 @@
 #include "processor.hpp"
 #include "spectrum.hpp"
 #include "thermal/conductance.hpp"
+#include "tilted/poles.hpp"
 
 namespace nb = nanobind;
 
@@ -196,6 +197,33 @@ Array interpolation_weights(Vector u, int nodes) {
     return out;
 }
 
+// Of sets with the same leads, from G of the isolated wires' ends, shape (set, node, 8, 8): poles and their residues, shapes
+// (set, pole) and (set, pole, 4), filled up by poles of no residue; a residue that is NaN where there is no model.
+std::pair<ComplexArray, ComplexArray> poles_of_tilted(ArrayIn<Amplitude, 1> z, ArrayIn<Amplitude, 4> F, ArrayIn<Amplitude, 2> sigma,
+                                                      ArrayIn<Amplitude, 2> slope, double hop, double window) {
+    EndSquare at_zero, by_energy;
+    take_ends(sigma.data(), at_zero), take_ends(slope.data(), by_energy);
+    const TiltedLeads leads(at_zero, by_energy);
+    std::vector<std::vector<TiltedPole>> found(F.shape(0));
+    run([&](Stop& stop) {
+        in_parallel(int(found.size()), stop, [&](int set) {
+            const EndData data(z, F.data() + set * z.size() * 64);
+            if (!tilted_poles(data.levels(), leads, hop, window, found[set]))
+                found[set].assign(1, {{0.0, -window}, {NAN, NAN, NAN, NAN}});
+        });
+    });
+    size_t most = 1;
+    for (const auto& poles : found) most = std::max(most, poles.size());
+    auto poles = new_array<Amplitude>({found.size(), most}), residues = new_array<Amplitude>({found.size(), most, 4});
+    for (size_t n = 0; n < found.size() * most; ++n) {
+        const auto& of = found[n / most];
+        const TiltedPole pole = n % most < of.size() ? of[n % most] : TiltedPole{{0.0, -window}, {}};
+        poles.data()[n] = pole.z;
+        std::copy(pole.residue, pole.residue + 4, residues.data() + 4 * n);
+    }
+    return {poles, residues};
+}
+
 ComplexArray trigamma_of(ArrayIn<Amplitude, 2> z) {
     auto out = new_array<Amplitude>({z.shape(0), z.shape(1)});
     for (size_t k = 0; k < z.size(); ++k) {
@@ -241,6 +269,8 @@ NB_MODULE(CORE_MODULE, m) {
     m.def("thermal_weights", &thermal_weights, nb::arg("bias"), nb::arg("kT"), nb::arg("nodes"));
     m.def("interpolation_weights", &interpolation_weights, nb::arg("u"), nb::arg("nodes"));
     m.def("trigamma", &trigamma_of, nb::arg("z"));
+    m.def("tilted_poles", &poles_of_tilted, nb::arg("z"), nb::arg("F"), nb::arg("sigma"), nb::arg("slope"), nb::arg("hop"),
+          nb::arg("window"));
     nb::module_ internals = m.def_submodule("internals", "What is tested of the core but never called in earnest.");
     core::bind_internals(internals);
 }

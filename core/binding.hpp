@@ -5,9 +5,11 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/vector.h>
 
+#include <memory>
 #include <vector>
 
 #include "leads/self_energy.hpp"
+#include "tilted/levels.hpp"
 
 namespace core {
 
@@ -33,6 +35,25 @@ inline std::vector<Wire> wires_of(const Matrix& V, const Matrix& parameters) {
         throw nb::value_error("parameters must be as many rows as V has, of as many numbers as a wire has parameters");
     return wires_of(int(V.shape(0)), int(V.shape(1)), V.data(), parameters.data());
 }
+
+inline void take_ends(const Amplitude* from, EndSquare& to) {
+    for (int k = 0; k < 64; ++k) to[k / 8][k % 8] = {from[k].real(), from[k].imag()};
+    to_majorana(to);
+}
+
+// Energies above the axis and the Green's function of isolated ends there, shape (node, 8, 8), as tilted/levels.hpp takes them.
+struct EndData {
+    std::vector<Complex<double>> z;
+    std::unique_ptr<EndSquare[]> F;
+
+    EndData(const ArrayIn<Amplitude, 1>& at, const Amplitude* ends) : F(new EndSquare[at.size()]) {
+        for (size_t k = 0; k < at.size(); ++k) {
+            z.emplace_back(at.data()[k].real(), at.data()[k].imag());
+            take_ends(ends + 64 * k, F[k]);
+        }
+    }
+    std::vector<TiltedLevel> levels() const { return tilted_levels(z.data(), F.get(), int(z.size())); }
+};
 
 // What is tested of the core but never called in earnest.
 void bind_internals(nb::module_& m);

@@ -1,6 +1,7 @@
 // For the tests alone: pieces of the core that nothing else calls from Python, in the submodule `internals`.
 //
 // A list of levels is (E, w): shapes (level,) and (level, 8), a then b of levels.hpp.
+#include <nanobind/stl/complex.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
@@ -224,6 +225,23 @@ void add_averages(ArrayIn<Amplitude, 1> z, ArrayIn<Amplitude, 3> r, Vector bias,
     average_poles(as_terms(z, r), {bias.data(), bias.data() + bias.size()}, kT, out.data());
 }
 
+// Levels E ≥ 0 in a tilted field and what the ends see of them, shapes (level,) and (level, 8), from G of the ends at nodes
+// above the axis, shape (node, 8, 8).
+std::pair<Array, ComplexArray> tilted_levels_from_ends(ArrayIn<Amplitude, 1> z, ArrayIn<Amplitude, 3> F) {
+    const auto levels = EndData(z, F.data()).levels();
+    Array E = new_array({levels.size()});
+    auto w = new_array<Amplitude>({levels.size(), 8});
+    for (size_t n = 0; n < levels.size(); ++n) {
+        E.data()[n] = levels[n].E;
+        for (int end = 0; end < 8; end += 4) {
+            const auto* own = levels[n].w + end;
+            const auto on_sites = detail::site_parts<false>(own[0], own[1], own[2], own[3]);
+            for (int i = 0; i < 4; ++i) w.data()[8 * n + end + i] = {on_sites.of[i].re, on_sites.of[i].im};
+        }
+    }
+    return {E, w};
+}
+
 }  // namespace
 
 void bind_internals(nb::module_& m) {
@@ -242,6 +260,7 @@ void bind_internals(nb::module_& m) {
     m.def("complete_low_levels", &complete_low_levels);
     m.def("diagonalise_nearly", &diagonalise_nearly);
     m.def("dense_energies", &densest);
+    m.def("tilted_levels", &tilted_levels_from_ends);
     m.def("sum_poles", &sum_of_poles);
     m.def("average_poles", &add_averages);
 }

@@ -21,6 +21,7 @@
 
 #include <algorithm>
 
+#include "pencil.hpp"
 #include "tridiagonal.hpp"
 
 namespace core {

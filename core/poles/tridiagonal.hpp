@@ -6,7 +6,7 @@
 // done before the others its steps are multiplications by one.
 #pragma once
 
-#include "pencil.hpp"
+#include "reduction.hpp"
 
 namespace core {
 
@@ -29,8 +29,15 @@ struct Tridiagonal {
 
 namespace detail {
 
-// Subtract v pᵀ + p vᵀ from the first m rows of A and multiply these by `next`, in one pass.
-template <int BLOCKS>
+// x − v p ∓ p' v'.
+template <Symmetry SIGN>
+CORE_INLINE Columns without(Columns x, Columns v, Columns p, Columns other_p, Columns other_v) {
+    if constexpr (SIGN == SYMMETRIC) return x - v * p - other_p * other_v;
+    else return x - v * p + other_p * other_v;
+}
+
+// Subtract v pᵀ ± p vᵀ from the first m rows of A = ±Aᵀ and multiply these by `next`, in one pass.
+template <Symmetry SIGN, int BLOCKS>
 CORE_INLINE void update_and_multiply(double* A, std::ptrdiff_t stride, int m, int first, const double* v, const double* p,
                                      const double* next, double* product) {
     Columns vc[BLOCKS], pc[BLOCKS], total[BLOCKS];
@@ -42,7 +49,7 @@ CORE_INLINE void update_and_multiply(double* A, std::ptrdiff_t stride, int m, in
         double* row = A + i * stride + first;
         Columns vi = v[i], pi = p[i], ni = next[i];
         for (int b = 0; b < BLOCKS; ++b) {
-            Columns entry = Columns::load(row + b * COLUMNS) - vi * pc[b] - pi * vc[b];
+            Columns entry = without<SIGN>(Columns::load(row + b * COLUMNS), vi, pc[b], pi, vc[b]);
             entry.store(row + b * COLUMNS);
             total[b] = total[b] + entry * ni;
         }
@@ -52,8 +59,10 @@ CORE_INLINE void update_and_multiply(double* A, std::ptrdiff_t stride, int m, in
 
 }  // namespace detail
 
-// Tridiagonalise the pencil's A, destroyed, into lane `set` of T.
-inline void tridiagonalise(Pencil& pencil, Tridiagonal& T, int set) {
+// Tridiagonalise A, destroyed, and turn the rows along: diagonal(k, value) and off(k, value), of row k and column k + 1, take
+// the result.
+template <Symmetry SIGN, class Diagonal, class Off>
+inline void tridiagonalise(Reduction<SIGN>& pencil, Diagonal diagonal, Off off) {
     // Entry m here is entry k = r − 1 − m of the pencil, so that active rows and columns start at 0.
     int r = pencil.rank, width = pencil.width;
     double* A = &pencil.A[size_t(r - 1) * width];
@@ -63,24 +72,24 @@ inline void tridiagonalise(Pencil& pencil, Tridiagonal& T, int set) {
         int k = r - 1 - m, active = padded(m);
         double* row = A - std::ptrdiff_t(m) * width;
         for (int j = 0; j < padded(m + 1); j += COLUMNS) {
-            Columns entry = Columns::load(row + j) - v[m] * Columns::load(&p[j]) - p[m] * Columns::load(&v[j]);
+            Columns entry = detail::without<SIGN>(Columns::load(row + j), v[m], Columns::load(&p[j]), p[m], Columns::load(&v[j]));
             entry.store(row + j);
         }
-        T.diagonal[k].set(set, row[m]);
+        diagonal(k, row[m]);
         if (m == 0) break;
         double head = row[m - 1];
         for (int c = 0; c < width; ++c) next[c] = c < m - 1 ? row[c] : 0.0;
         double tail = dot(next.data(), next.data(), active), norm = std::sqrt(tail + head * head);
         double alpha = !(tail > 0) ? head : head > 0 ? -norm : norm;
         double beta = tail > 0 ? 1.0 / (norm * (norm + std::abs(head))) : 0.0;
-        T.off[k].set(set, alpha);
+        off(k, alpha);
         next[m - 1] = head - alpha;
         int j = 0;
         for (; j + 2 * COLUMNS <= active; j += 2 * COLUMNS)
-            detail::update_and_multiply<2>(A, -std::ptrdiff_t(width), m, j, v.data(), p.data(), next.data(), product.data());
-        if (j < active) detail::update_and_multiply<1>(A, -std::ptrdiff_t(width), m, j, v.data(), p.data(), next.data(), product.data());
+            detail::update_and_multiply<SIGN, 2>(A, -std::ptrdiff_t(width), m, j, v.data(), p.data(), next.data(), product.data());
+        if (j < active) detail::update_and_multiply<SIGN, 1>(A, -std::ptrdiff_t(width), m, j, v.data(), p.data(), next.data(), product.data());
         for (int c = m; c < active; ++c) product[c] = 0.0;
-        double overlap = 0.5 * beta * beta * dot(product.data(), next.data(), active);
+        double overlap = SIGN == SYMMETRIC ? 0.5 * beta * beta * dot(product.data(), next.data(), active) : 0.0;
         Columns even = 0.0, odd = 0.0;
         for (int c = 0; c < m; ++c) {
             v[c] = next[c];
@@ -91,7 +100,12 @@ inline void tridiagonalise(Pencil& pencil, Tridiagonal& T, int set) {
         Columns along = beta * (even + odd);
         for (int c = 0; c < m; ++c) (Columns::load(seen(c)) - next[c] * along).store(seen(c));
     }
-    for (int k = 0; k < r; ++k)
+}
+
+// The same of a symmetric A, into lane `set` of T.
+inline void tridiagonalise(Reduction<SYMMETRIC>& pencil, Tridiagonal& T, int set) {
+    tridiagonalise(pencil, [&](int k, double value) { T.diagonal[k].set(set, value); }, [&](int k, double value) { T.off[k].set(set, value); });
+    for (int k = 0; k < pencil.rank; ++k)
         for (int c = 0; c < 8; ++c) T.rows[k][c].set(set, pencil.rows[8 * k + c]);
 }
 

@@ -210,7 +210,7 @@ class FiguresConfig(_Section):
     verification_shifts: Positive = 7
     """How many means of V it tries for each wire."""
     tilted_B_points: Positive = 41
-    """Of its maps, in a tilted field, which takes fifty times longer to simulate."""
+    """Of its maps, in a tilted field."""
     bias_max: Annotated[float, Field(gt=0, le=1)] = 0.04
     """The maps reach from minus this V_bias to this, in meV."""
 

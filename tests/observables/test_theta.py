@@ -9,7 +9,6 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
-from scipy.linalg import block_diag
 from scipy.optimize import brentq
 
 import arithmetics
@@ -18,7 +17,6 @@ from disorder_landscape.model import hamiltonian
 from disorder_landscape.solver import compiled, kwant_reference, routes, tilted_average
 from disorder_landscape.solver.quadrature import thermal_quadrature
 from disorder_landscape.solver.routes import thermal_average
-from disorder_landscape.solver.tilted_levels import BASIS, isolated_wire
 from random_wires import energies, fields, mus, random_wire, seeds
 
 BIAS = np.array([-0.04, -0.02, 0.0, 0.02, 0.04])
@@ -171,21 +169,6 @@ def test_a_level_of_the_inner_sites_switches_to_pivoting():
     assert_allclose(bare(wire, 0.1, 0.5, omega, theta), kwant, atol=1e-9)
 
 
-@pytest.mark.parametrize(("seed", "theta"), [(1, 0.4), (2, np.pi / 2), (6, -2.0), (9, 1e-3)])
-def test_the_small_matrix_has_the_ends_green_function_of_the_wire(seed, theta):
-    wire, mu, B = random_wire(seed, sites=100), np.array([0.2]), np.array([0.5])
-    z = np.linspace(0.005, 0.08, 16) + 0.001j
-    F = compiled.isolated_ends([wire], mu, B, z, theta)[0, 0, 0]
-    A, u = isolated_wire(z, F)
-    np.testing.assert_array_equal(A, -A.T)
-    left_end = (BASIS @ u)[:4]  # which is not rotated
-    for omega in (0.0123, 0.047):
-        H = hamiltonian.wire_hamiltonian(wire, 0.2, 0.5, omega, theta)
-        G = np.linalg.inv(omega * np.eye(len(H)) - H)
-        ours = left_end @ np.linalg.inv(omega * np.eye(len(A)) - 1j * A) @ left_end.conj().T
-        assert_allclose(ours, G[:4, :4], atol=1e-6 * abs(G[:4, :4]).max())
-
-
 @pytest.mark.parametrize(
     ("seed", "mu", "B", "theta", "temperature"),
     [
@@ -205,24 +188,15 @@ def test_the_average_is_the_integral(seed, mu, B, theta, temperature):
     assert energies_.max() < 100 < brute.energies.max()
 
 
-def test_a_level_that_no_lead_reaches_adds_nothing():
-    """Its pole is on the real axis, and rounding alone decides on which side."""
-    wire, B, mu, theta = random_wire(3), 0.5, np.array([0.2]), 0.7
-    average = tilted_average._Average(wire, B, BIAS, 0.004, theta)
-    z = average.real[:10] + 1e-3j
-    F = compiled.isolated_ends([wire], mu, np.array([B]), z, theta)[0, 0, 0]
-    A, u = isolated_wire(z, F)
-    pair = np.array([[0.0, 0.01], [-0.01, 0.0]])  # of levels at ±0.01 meV
-    poles, residues = average._poles(A, u)
-    more = block_diag(A, pair), np.hstack([u, np.zeros((len(u), 2))])
-    with_pair, their_residues = average._poles(*more)
-    decoupled = abs(abs(with_pair.real) - 0.01) + abs(with_pair.imag) < 1e-12
-    assert decoupled.sum() == 2
-    assert abs(their_residues[decoupled]).max() < 1e-12
-    assert with_pair.imag.max() < 0
-    order, same = np.argsort(poles), np.argsort(with_pair[~decoupled])
-    assert_allclose(with_pair[~decoupled][same], poles[order], rtol=0, atol=1e-10)
-    assert_allclose(their_residues[~decoupled].sum(0), residues.sum(0), rtol=0, atol=1e-9)
+@pytest.mark.parametrize("barrier", [(0.0, 0.0), (15.0, 15.0)])
+@pytest.mark.parametrize("B", [0.3, 0.8])
+def test_the_average_is_the_integral_with_modes_at_zero_energy_and_with_open_leads(B, barrier):
+    """Two poles on the imaginary axis, and poles that are broad and overlap."""
+    arguments = [Nanowire(np.zeros(300), barrier=barrier)], np.array([0.1]), np.array([B]), BIAS
+    G, error, energies_ = thermal_average(*arguments, 0.05, 0.2)
+    brute = thermal_quadrature(*arguments, 0.05, tolerance=1e-7, panel=0.2, theta=0.2)
+    assert abs(G - brute.conductance).max() < error.max() < tilted_average.TOLERANCE
+    assert energies_.max() < 200 < brute.energies.max()
 
 
 def test_where_the_model_fails_the_integral_takes_over(monkeypatch):

@@ -23,7 +23,7 @@ BELOW_GAP: float = compiled.core.BELOW_GAP
 """Part of the gap up to which the thermal window is rational in energy all over."""
 BLOCK_ENERGIES = {"fast": 2**18, "tilted": 2**14, "kwant": 2**8}
 """Energies that are solved at a time: about 16 MB and one second."""
-BLOCK_SETS = {"fast": 2**12, "tilted": 2**5}
+BLOCK_SETS = {"fast": 2**12, "tilted": 2**9}
 """Sets (wire, μ, B) that are averaged exactly at a time: one or two seconds."""
 
 
