@@ -105,7 +105,18 @@ inline R sum_of_entries(const Ends& G) {
     return total;
 }
 
-// G and the leads of LANES pairs (μ, ω) from `first` on, those that lost digits solved by pivoting.
+// Solve the lanes of G that lost digits by pivoting; one(lane) are its terms and its leads.
+template <class A, class Eliminated, class Ends, class One>
+inline void solve_lost_lanes(const RotatedWire& wire, const Eliminated& ends, Ends& G, int count, double growth_limit, One one) {
+    auto sum = sum_of_entries<typename A::R>(G);
+    for (int l = 0; l < count; ++l)
+        if (!(ends.growth[l] < growth_limit) || !std::isfinite(sum[l])) {
+            const auto [terms, leads] = one(l);
+            set_ends(G, l, pivoted_ends(wire, terms, on_the_ends(leads)));
+        }
+}
+
+// G and the leads of LANES pairs (μ, ω) from `first` on.
 template <class A, class Use>
 inline void solve_pairs(const Grid& grid, const FieldOf<A>& field, int first, double growth_limit, Use use) {
     int energies = field.energy_count(), pairs = grid.mu_count * energies;
@@ -121,13 +132,10 @@ inline void solve_pairs(const Grid& grid, const FieldOf<A>& field, int first, do
     auto ends = eliminate_inner_sites<typename A::N, typename A::Block>(view(field.wire), terms);
     auto G = attach_leads(ends, leads);
     int count = std::min(A::LANES, pairs - first);
-    auto sum = sum_of_entries<typename A::R>(G);
-    for (int l = 0; l < count; ++l)
-        if (!(ends.growth[l] < growth_limit) || !std::isfinite(sum[l])) {
-            int e = (first + l) % energies;
-            ComplexTerms one = A::one(kinetic(first + l), field.pairing[e], field.hop);
-            set_ends(G, l, pivoted_ends(field.wire, one, on_the_ends(field.leads[e])));
-        }
+    solve_lost_lanes<A>(field.wire, ends, G, count, growth_limit, [&](int l) {
+        int e = (first + l) % energies;
+        return std::pair(A::one(kinetic(first + l), field.pairing[e], field.hop), field.leads[e]);
+    });
     use(G, leads, count);
 }
 

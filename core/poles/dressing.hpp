@@ -233,10 +233,13 @@ struct DressedEnds {
     // x ← M⁻¹x.
     void solve(Ends8& x) const {
         solve_lower(x);
-        for (int i = 7; i >= 0; --i) {
-            x[i] = x[i] * over[i];
+        for (int i = 0; i < 8; ++i) x[i] = x[i] * over[i];
+        solve_upper(x);
+    }
+    // x ← L⁻ᵀx.
+    void solve_upper(Ends8& x) const {
+        for (int i = 7; i >= 0; --i)
             for (int k = i + 1; k < 8; ++k) x[i] = x[i] - entry[PLACES[i][k]] * x[k];
-        }
     }
     // start + xᵀM⁻¹y, given f = L⁻¹x and g = L⁻¹y.
     PoleComplex add_product(const Ends8& f, const Ends8& g, PoleComplex start) const {

@@ -10,11 +10,11 @@
 // coupling is left.  As U x_new = S t, a pole's v, G ≈ v vᵀ/(ω − z), needs no further sum.
 #pragma once
 
+#include "aberth.hpp"
 #include "starts.hpp"
 
 namespace core {
 
-constexpr double FAINT = 1e-9;    // widths below this (meV) carry no conductance and need no digits
 constexpr int STEPS = 2;          // steps of a batch before it is looked at
 constexpr int ROUNDS = 8;         // most batches per pole
 constexpr double CENTRAL = 1e-7;  // poles with |Re z| below this (meV) are their own mirror images −z*
@@ -45,6 +45,43 @@ public:
         R.fill(z, levels.E);
         S.fill(inverse, z);
         M.fill(levels, R, S, z);
+    }
+
+    // Tr M⁻¹M' at the energies `at`: of M⁻¹ = Σ x xᵀ/Δ, x the columns of L⁻ᵀ.
+    PoleComplex slope_of_determinant(const Leads& leads, PoleComplex at) {
+        z = at;
+        factor_at_energies(leads.inverse);
+        PoleComplex total(0.0);
+        for (int k = 0; k < 8; ++k) {
+            t.fill(PoleComplex(0.0));
+            t[k] = PoleComplex(1.0);
+            M.solve_upper(t);
+            norm = PoleComplex(0.0);
+            for (int n = 0; n < levels.size(); ++n) {
+                auto [above, below] = at_level(n, t);
+                PoleComplex up = above * R.of[n].up, down = below * R.of[n].down;
+                norm = norm + up * up + down * down;
+            }
+            add_slopes(leads);
+            total = total + norm * M.over[k];
+        }
+        return total;
+    }
+
+    // Fill in the vectors of the poles at z, x ∝ R Uᵀ t with M t = 0.
+    void find_vectors(const Leads& leads, PoleVectors& vectors, int first, int count) {
+        factor_at_energies(leads.inverse);
+        for (int i = 0; i < 8; ++i) t[i] = PoleComplex(1.0 / (i + 1));
+        M.solve(t);
+        PoleReal size = 0.0;
+        for (const auto& entry : t) size = size + square(entry);
+        size = inverse(root(size));
+        for (auto& entry : t) entry = entry * size;
+        for (int n = 0, half = levels.size(); n < half; ++n) {
+            auto [above, below] = at_level(n, t);
+            PoleComplex up = above * R.of[n].up, down = below * R.of[n].down;
+            for (int l = 0; l < count; ++l) vectors.set(first + l, n, get(up, l)), vectors.set(first + l, half + n, get(down, l));
+        }
     }
 
     // What a pole's residue needs.
@@ -100,13 +137,25 @@ private:
         apply_resolvent();
         M.solve(t);
         PoleComplex overlap = add_mixed();
-        norm = norm + slope_between(leads.inverse, t, z) - levels.far.slope_between(t, t, z);
+        add_slopes(leads);
         PoleComplex shift = overlap * inverse(norm);
         z.re = z.re - shift.re;
         PoleReal below = z.im - shift.im, least = -1e-16;
         z.im = where_greater(below, least, least, below);
         scale = inverse(root(root(square(norm))));
     }
+
+    // Uᵀ y at ±E of a level.
+    std::pair<PoleComplex, PoleComplex> at_level(int n, const Ends8& y) const {
+        PoleComplex first(0.0), second(0.0);
+        const auto& weight = levels.weight[n];
+        for (int i = 0; i < 4; ++i) first = first + y[i] * PoleReal(weight[i]);
+        for (int i = 4; i < 8; ++i) second = second + y[i] * PoleReal(weight[i]);
+        return {first + second, first - second};
+    }
+
+    // Add tᵀM't less what the levels of x give to the norm.
+    void add_slopes(const Leads& leads) { norm = norm + slope_between(leads.inverse, t, z) - levels.far.slope_between(t, t, z); }
 
     // x ← R x, t ← U R x.
     void apply_resolvent() {
@@ -130,11 +179,8 @@ private:
         const Ends8 added = t;
         PoleComplex overlap(0.0), total(0.0);
         for (int n = 0, half = levels.size(); n < half; ++n) {
-            PoleComplex first(0.0), second(0.0);
-            const auto& weight = levels.weight[n];
-            for (int i = 0; i < 4; ++i) first = first + added[i] * PoleReal(weight[i]);
-            for (int i = 4; i < 8; ++i) second = second + added[i] * PoleReal(weight[i]);
-            PoleComplex up = x[n] + (first + second) * R.of[n].up, down = x[half + n] + (first - second) * R.of[n].down;
+            auto [above, below] = at_level(n, added);
+            PoleComplex up = x[n] + above * R.of[n].up, down = x[half + n] + below * R.of[n].down;
             x[n] = up, x[half + n] = down;
             total = total + up * up + down * down;
             overlap = overlap + up * old[n] + down * old[half + n];

@@ -17,7 +17,10 @@ struct Resonances {
     PoleVectors vectors;
     std::vector<int> order;  // those with mirror images, then those without
     int paired = 0;          // how many have images
+    int spare = 0;           // how many poles in both halves may be others of those, too faint to tell
     bool whole = false;      // whether none was lost, or met twice
+
+    int both() const { return paired + int(order.size()); }  // poles in both halves
 };
 
 namespace detail {
@@ -70,10 +73,10 @@ inline void reflect(Resonances& of, int k) {
 // Put the poles in order.  A pole in the left half stands for its mirror image; one that did not converge is
 // left out: near the axis another's image may stand for it.  Vectors of equal poles (Kramers pairs at B = 0)
 // are made orthogonal; one that is not new is left out: of these also return the last central one or, if there is
-// none, the last, and which it equals, or −1.
+// none, the last, and which it equals, or −1.  Equal poles that are faint stay: they carry nothing.
 inline std::pair<int, int> right_half(Resonances& found, const Levels& levels, const Leads& leads) {
     int again = -1, twin = -1;
-    found.order.clear();
+    found.order.clear(), found.spare = 0;
     for (bool central : {false, true}) {
         for (int k = 0; k < int(found.poles.size()); ++k) {
             Pole& pole = found.poles[k];
@@ -81,8 +84,12 @@ inline std::pair<int, int> right_half(Resonances& found, const Levels& levels, c
             if (pole.z.real() < -CENTRAL) reflect(found, k);
             double kept = 1.0, width = std::abs(pole.z.imag());
             for (int at : found.order) {
-                bool faint = width < FAINT;  // it may stand twice: it carries nothing
-                if (!faint && std::norm(found.poles[at].z - pole.z) < EQUAL * width * EQUAL * width) {
+                double apart = std::abs(found.poles[at].z - pole.z);
+                if (width < FAINT && apart < FAINT) {
+                    found.spare += central ? 1 : 2;
+                    break;
+                }
+                if (apart < EQUAL * width) {
                     double left = orthogonalise(found, k, at, levels, leads);
                     kept = std::min(kept, left);
                     if (!(kept > 0.1)) again = k, twin = at;
@@ -95,32 +102,74 @@ inline std::pair<int, int> right_half(Resonances& found, const Levels& levels, c
     return {again, twin};
 }
 
+// Whether as many poles are found as there are; what is too faint may stand twice.
+inline bool has_all(const Resonances& found, const Starts& starts) {
+    return starts.both <= found.both() && found.both() <= starts.both + found.spare;
+}
+
 }  // namespace detail
 
-// Iterate the poles of `start_poles`.  Where two starts have ended at one pole, the other one is looked for again: on the
-// imaginary axis on either side of it, elsewhere from its start without the vector of the one found.
-inline Resonances find_poles(const Starts& starts, const Levels& levels, const Leads& leads, Batch& batch) {
-    Resonances found{starts.poles, starts.vectors, {}};
-    std::vector<int> all(found.poles.size());
-    for (size_t k = 0; k < all.size(); ++k) all[k] = int(k);
-    iterate(found.poles, found.vectors, all, leads, batch);
-    auto [again, twin] = detail::right_half(found, levels, leads);
-    auto lost = [&] { return starts.both - found.paired - int(found.order.size()); };
-    found.whole = lost() == 0;
-    if (found.whole || again < 0) return found;
+namespace detail {
+
+// Where two starts have ended at one pole, `twin`, look for the other one once more: on the imaginary axis on either side of
+// it, elsewhere from its start without the vector of the one found.
+inline void look_again(Resonances& found, const Starts& starts, int again, int twin, const Levels& levels, const Leads& leads,
+                       Batch& batch) {
     bool central = std::abs(found.poles[twin].z.real()) <= CENTRAL;
-    if (lost() != (central ? 1 : 2)) return found;
+    if (starts.both - found.both() != (central ? 1 : 2)) return;
     const Amplitude there = found.poles[twin].z, here = starts.poles[again].z;
     for (Amplitude z : central ? std::array{there * (1.0 - BESIDE), there * (1.0 + BESIDE)} : std::array{here, 2.0 * here - there}) {
         Pole& pole = found.poles[again];
         pole.z = z;
         for (int n = 0; n < found.vectors.size(); ++n) found.vectors.set(again, n, starts.vectors.get(again, n));
         for (auto& entry : pole.t) entry = 0.0;
-        detail::orthogonalise(found, again, twin, levels, leads);
+        orthogonalise(found, again, twin, levels, leads);
         iterate(found.poles, found.vectors, {again}, leads, batch);
-        detail::right_half(found, levels, leads);
-        found.whole = lost() == 0;
-        if (found.whole) break;
+        right_half(found, levels, leads);
+        found.whole = has_all(found, starts);
+        if (found.whole) return;
+    }
+}
+
+// Take the starts to where the poles are, all at once, and give each its vector; false if they do not settle.
+inline bool start_again(Starts& starts, const Levels& levels, const Leads& leads, Batch& batch) {
+    std::vector<Zero> zeros;
+    for (const Pole& pole : starts.poles) zeros.push_back({pole.z, pole.z.real() > CENTRE});
+    auto slope = [&](PoleComplex z) {
+        PoleComplex total = batch.slope_of_determinant(leads, z);
+        for (int n : starts.near)
+            total = total + inverse(PoleComplex(z.re - levels.E[n], z.im)) + inverse(PoleComplex(z.re + levels.E[n], z.im));
+        return total;
+    };
+    if (!settle(zeros, slope)) return false;
+    std::vector<int> all(zeros.size());
+    std::iota(all.begin(), all.end(), 0);
+    for (size_t first = 0; first < all.size(); first += POLES) {
+        batch.z = load(zeros, all, first);
+        batch.find_vectors(leads, starts.vectors, int(first), int(std::min<size_t>(POLES, all.size() - first)));
+    }
+    for (size_t k = 0; k < zeros.size(); ++k) starts.poles[k].z = zeros[k].z;
+    return true;
+}
+
+}  // namespace detail
+
+// Iterate the poles of `start_poles`; where one is lost, in other ways too.
+inline Resonances find_poles(Starts& starts, const Levels& levels, const Leads& leads, Batch& batch) {
+    Resonances found{starts.poles, starts.vectors, {}};
+    std::vector<int> all(found.poles.size());
+    std::iota(all.begin(), all.end(), 0);
+    auto iterate_all = [&] {
+        iterate(found.poles, found.vectors, all, leads, batch);
+        const auto twins = detail::right_half(found, levels, leads);
+        found.whole = detail::has_all(found, starts);
+        return twins;
+    };
+    auto [again, twin] = iterate_all();
+    if (!found.whole && again >= 0) detail::look_again(found, starts, again, twin, levels, leads, batch);
+    if (!found.whole && detail::start_again(starts, levels, leads, batch)) {
+        found.poles = starts.poles, found.vectors = starts.vectors;
+        iterate_all();
     }
     return found;
 }

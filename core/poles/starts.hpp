@@ -172,7 +172,8 @@ inline void mix_levels(const Levels& levels, const std::vector<int>& near, const
 struct Starts {
     std::vector<Pole> poles;  // in the right half plane and close to the imaginary axis
     PoleVectors vectors;
-    int both;  // how many there are in both halves
+    int both;               // how many there are in both halves
+    std::vector<int> near;  // levels whose poles they are
 };
 
 // Approximate poles of the levels below a limit, from G of the isolated wire at one energy ω.
@@ -188,7 +189,7 @@ inline Starts start_poles(double omega, const double (&G)[8][8], double limit, d
     std::vector<int> right;
     for (int k = 0; k < H.n; ++k)
         if (H.at(k, k).real() > -CENTRE) right.push_back(k);
-    Starts starts{{}, PoleVectors(int(right.size()), levels.size()), H.n};
+    Starts starts{{}, PoleVectors(int(right.size()), levels.size()), H.n, near};
     for (int k : right) {
         Pole pole;
         pole.z = H.at(k, k);

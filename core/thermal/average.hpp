@@ -74,7 +74,7 @@ inline double rational_average(const EnergyPlan& plan, const detail::ThermalFiel
     for (int k = 0; k < COMPARED; ++k) at.shares[k] = detail::share_that_counts(at.checks[k], plan.kT, of.poles) * at.of_kernel[k];
     double of_model = SAFETY * hop * detail::mismatch(at, leads, width, data, batch);
     double estimate = detail::largest(of_model, detail::error_of_rest(plan, of, at));
-    if (model != nullptr) *model = {m, list, {std::move(found.poles), {0, 0}, std::move(found.order), found.paired, true}, std::move(of)};
+    if (model != nullptr) *model = {m, list, {std::move(found.poles), {0, 0}, std::move(found.order), found.paired, found.spare, true}, std::move(of)};
     return estimate;
 }
 

@@ -74,10 +74,11 @@ inline void solve_nodes(const ThermalField& field, const EnergyPlan& plan, const
     }
 }
 
-// Solve each set of one wire and field at `each` energies: at(set, k) are the energy and its leads, and use(set, k, ends, G,
-// bare, lane) takes what is found.
+// Solve each set of one wire and field at `each` energies: at(set, k) are the energy and its leads, and use(set, k, bare, G)
+// takes what is found.
 template <class A, class At, class Use>
-inline void solve_each(const ThermalField& field, const double* mu, const SetIndex* sets, int count, int each, At at, Use use) {
+inline void solve_each(const ThermalField& field, const double* mu, const SetIndex* sets, int count, int each, double growth_limit,
+                       At at, Use use) {
     int total = count * each;
     for (int piece = 0; piece < total; piece += A::LANES) {
         Terms<typename A::N> terms{};
@@ -91,9 +92,14 @@ inline void solve_each(const ThermalField& field, const double* mu, const SetInd
         }
         auto ends = eliminate_inner_sites<typename A::N, typename A::Block>(view(field.wire), terms);
         auto G = attach_leads(ends, lanes);
+        solve_lost_lanes<A>(field.wire, ends, G, std::min(A::LANES, total - piece), growth_limit, [&](int l) {
+            auto [omega, leads] = at((piece + l) / each, (piece + l) % each);
+            double kinetic = field.kinetic(mu[sets[(piece + l) / each].mu]);
+            return std::pair(A::one(kinetic, typename A::Pairing(field.of, omega), field.hop), leads);
+        });
         auto bare = A::conductances(G, lanes);
         for (int l = 0; l < A::LANES && piece + l < total; ++l)
-            use((piece + l) / each, (piece + l) % each, ends.growth[l], lane_of(bare, l), [&](int k) {
+            use((piece + l) / each, (piece + l) % each, lane_of(bare, l), [&](int k) {
                 return Complex<double>(G.entry[k].re[l], G.entry[k].im[l]);
             });
     }
@@ -102,7 +108,7 @@ inline void solve_each(const ThermalField& field, const double* mu, const SetInd
 // Add the data at the checks and samples, once the sets' own are known.
 template <class A>
 inline void solve_checks(const ThermalField& field, const EnergyPlan& plan, const double* mu, const SetIndex* sets, int count,
-                         SetData* data) {
+                         double growth_limit, SetData* data) {
     auto at = [&](int set, int k) {
         if (CHECKS <= k && k < COMPARED) {
             double omega = data[set].sought[k - CHECKS];
@@ -111,9 +117,9 @@ inline void solve_checks(const ThermalField& field, const EnergyPlan& plan, cons
         int shared = plan.nodes + (k < CHECKS ? k : k - SOUGHT);
         return std::pair(plan.omega[shared], field.leads[shared]);
     };
-    solve_each<A>(field, mu, sets, count, COMPARED + plan.samples, at, [&](int set, int k, double growth, const auto& bare, auto entry) {
+    const int each = COMPARED + plan.samples;
+    solve_each<A>(field, mu, sets, count, each, growth_limit, at, [&](int set, int k, const auto& bare, auto entry) {
         SetData& of = data[set];
-        of.growth = largest(of.growth, growth);
         of.bare[plan.nodes + k] = bare;
         if (k >= COMPARED) return;
         for (int e = 0; e < 36; ++e) of.green[k].entry[e] = entry(e) * (1 / field.hop);
@@ -123,15 +129,14 @@ inline void solve_checks(const ThermalField& field, const EnergyPlan& plan, cons
 
 // Add the conductances above the gap.
 inline void solve_above(const ThermalField& field, const EnergyPlan& plan, const double* mu, const SetIndex* sets, int count,
-                        SetData* data) {
+                        double growth_limit, SetData* data) {
     std::vector<LeadSelfEnergy> leads;
     for (double omega : plan.above) leads.push_back(lead_self_energy(field.of, field.B, omega));
     auto at = [&](int, int k) { return std::pair(plan.above[k], leads[k]); };
-    solve_each<ComplexArithmetic>(field, mu, sets, count, int(plan.above.size()), at,
-                                  [&](int set, int k, double growth, const auto& bare, auto) {
-                                      data[set].growth = largest(data[set].growth, growth);
-                                      data[set].bare[plan.nodes_below() + COMPARED + k] = bare;
-                                  });
+    const int each = int(plan.above.size());
+    solve_each<ComplexArithmetic>(field, mu, sets, count, each, growth_limit, at, [&](int set, int k, const auto& bare, auto) {
+        data[set].bare[plan.nodes_below() + COMPARED + k] = bare;
+    });
 }
 
 // Average up to SETS sets into out (wire, mu, B, bias, 4), estimate (wire, mu, B) and, unless null, models, of the same
@@ -161,7 +166,9 @@ inline void average_sets(const Grid& grid, const EnergyPlan& plan, const SetInde
     for (size_t k = 0; k < fields.size(); ++k) {
         const ThermalField& field = fields[k];
         for (int i = starts[k]; i < starts[k + 1]; ++i) dense_energies(levels[i], field.hop, plan, data[i].sought);
-        auto solve = [&](auto solve_some) { solve_some(field, plan, grid.mu, sets + starts[k], starts[k + 1] - starts[k], &data[starts[k]]); };
+        auto solve = [&](auto solve_some) {
+            solve_some(field, plan, grid.mu, sets + starts[k], starts[k + 1] - starts[k], growth_limit, &data[starts[k]]);
+        };
         solve(field.of.dissipation > 0 ? solve_checks<ComplexArithmetic> : solve_checks<RealArithmetic>);
         solve(solve_above);
         const Leads leads = field.around_the_window(plan).broadened(field.of.dissipation);

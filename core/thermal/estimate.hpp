@@ -91,7 +91,7 @@ inline double error_of_samples(const EnergyPlan& plan, const RationalConductance
     bool none = true;
     for (int n = 0; n < of.poles.count; ++n) {
         double x = of.poles.x[n], width = -of.poles.y[n] * plan.gap / ((plan.gap - x) * (plan.gap + x)), highest = 0.0;
-        if (!(x > plan.energy_before_samples(LAST_POLES))) continue;
+        if (!(plan.energy_before_samples(LAST_POLES) < x && x < plan.gap)) continue;
         none = false;
         for (int hole = 0; hole < 2; ++hole)
             for (int c = 0; c < 4; ++c)

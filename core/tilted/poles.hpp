@@ -1,20 +1,18 @@
 // Poles of the wire with its leads in a tilted field, and their residues in the conductances.
 //
-// They are the zeros of f(z) = det D(z) ∏(z² − E²), D = 1 − F Σ, as many as there are levels ±E, and all are found at once
-// by Aberth's iteration (Math. Comp. 27, 339, 1973): Newton's on f over what the other zeros make of it,
+// They are the zeros of f(z) = det D(z) ∏(z² − E²), D = 1 − F Σ, as many as there are levels ±E, and aberth.hpp finds them:
 //
-//     1/Δz = f'/f − Σ_j 1/(z − z_j),   f'/f = Tr D⁻¹D' + Σ 1/(z − E) + 1/(z + E),
+//     f'/f = Tr D⁻¹D' + Σ 1/(z − E) + 1/(z + E).
 //
-// so that no two end at one zero.  Levels far outside the window are left where they are in f and among the z_j, and
-// cancel.  It starts at the levels as the leads shift them, and takes three or four steps.
+// It starts at the levels as the leads shift them.  Zeros far outside the window are taken for the levels themselves, which
+// then cancel.
 //
 // G† is on the real axis the function G(z*)†, which is analytic where G has its poles.  So with ρ = D⁻¹F/Tr D⁻¹D', the residue
 // of G at z, that of the probability Tr[Γ_b G_ba Γ_a G_ba†] is the sum of (ΓρΓ)_ij (G(z*)_ij)* over i in b and j in a.
 #pragma once
 
-#include <numeric>
-
 #include "../leads/btk.hpp"
+#include "../poles/aberth.hpp"
 #include "sums.hpp"
 
 namespace core {
@@ -30,21 +28,13 @@ constexpr double NEAR_TILTED = 1.3;   // levels up to so many windows have poles
 constexpr double LOW_LEVEL = 4.0;     // levels up to so many times their shift may end on the imaginary axis, each by itself
 constexpr double TO_SIDE = 0.1;       // by this part of its width one of such a pair is moved off the other's mirror image
 constexpr double FEEDS = 1e-9;        // a pole further above the real axis, in units of the window, makes no model
-constexpr double SETTLED = 1e-6;      // Last step, as a part of width or distance, after which no other is needed
 constexpr double PAIRED = 1e-3;       // distance of two zeros, as a part of their width, that are one
-constexpr int ABERTH_STEPS = 40;
 constexpr double AXIS = 1e-14;        // starts are so far below the real axis at least, in meV
 
-struct ZeroOfD {
-    Amplitude z;
-    bool mirrored;  // or it is for itself, where −z* may be another one or the same
-    bool settled = false;
-};
-
 // Where the levels' poles start: E + w†Tw with T = Σ/(1 − F Σ) of the far levels.
-inline std::vector<ZeroOfD> starts(const std::vector<TiltedLevel>& levels, int near, const TiltedLeads& leads,
+inline std::vector<Zero> starts(const std::vector<TiltedLevel>& levels, int near, const TiltedLeads& leads,
                                    TiltedSums& sums) {
-    std::vector<ZeroOfD> found;
+    std::vector<Zero> found;
     for (int first = 0; first < near; first += POLES) {
         PoleComplex z(0.0), w[8];
         for (int l = 0; l < POLES; ++l) {
@@ -79,62 +69,11 @@ inline std::vector<ZeroOfD> starts(const std::vector<TiltedLevel>& levels, int n
     return found;
 }
 
-// POLES of some zeros, in lanes; the last one fills up.
-inline PoleComplex load(const std::vector<ZeroOfD>& zeros, const std::vector<int>& which, size_t first) {
-    PoleComplex z;
-    for (int l = 0; l < POLES; ++l) {
-        Amplitude at = zeros[which[std::min(first + l, which.size() - 1)]].z;
-        z.re.set(l, at.real()), z.im.set(l, at.imag());
-    }
-    return z;
-}
-
-// Add the other zeros' Σ 1/(z − z_j), and find the square of the distance to the nearest.
-inline void add_others(const std::vector<ZeroOfD>& zeros, PoleComplex z, PoleComplex& sum, PoleReal& nearest) {
-    auto add = [&](Amplitude other) {
-        PoleComplex apart(z.re - other.real(), z.im - other.imag());
-        PoleReal distance = square(apart), none = 0.0, over = where_greater(distance, none, inverse(distance), none);  // itself
-        sum = sum + PoleComplex(apart.re * over, -apart.im * over);
-        nearest = where_greater(distance, none, where_greater(nearest, distance, distance, nearest), nearest);
-    };
-    for (const ZeroOfD& zero : zeros) {
-        add(zero.z);
-        if (zero.mirrored) add(-std::conj(zero.z));
-    }
-}
-
-// Take the zeros to where they are; return whether all settle.
-inline bool settle(std::vector<ZeroOfD>& zeros, int near, const TiltedLeads& leads, TiltedSums& sums) {
-    std::vector<int> left(zeros.size());
-    std::iota(left.begin(), left.end(), 0);
-    for (int step = 0; step < ABERTH_STEPS && !left.empty(); ++step) {
-        std::vector<Amplitude> next(zeros.size());
-        for (size_t first = 0; first < left.size(); first += POLES) {
-            const PoleComplex z = load(zeros, left, first);
-            sums.fill(z, 0, int(sums.E.size()));
-            PoleComplex others(0.0);
-            PoleReal nearest = 1e300;
-            add_others(zeros, z, others, nearest);
-            PoleComplex slope = sums.resolvents(near) - others - trace(sums.undressed(leads, z), sums.change(leads, z));
-            PoleComplex change = inverse(slope);
-            for (int l = 0; l < POLES && first + l < left.size(); ++l) {
-                ZeroOfD& zero = zeros[left[first + l]];
-                Amplitude by(change.re[l], change.im[l]);
-                next[left[first + l]] = zero.z - by;
-                zero.settled = std::abs(by) <= SETTLED * (FAINT + std::min(std::abs(zero.z.imag()), std::sqrt(nearest[l])));
-            }
-        }
-        for (int k : left) zeros[k].z = next[k];
-        std::erase_if(left, [&](int k) { return zeros[k].settled; });
-    }
-    return left.empty();
-}
-
 // Where a zero that is for itself is off the imaginary axis and its mirror image is none of the others, count that too.
-inline void complete_pairs(std::vector<ZeroOfD>& zeros) {
-    for (ZeroOfD& zero : zeros) {
+inline void complete_pairs(std::vector<Zero>& zeros) {
+    for (Zero& zero : zeros) {
         const Amplitude image = -std::conj(zero.z);
-        auto is_image = [&](const ZeroOfD& other) { return std::abs(other.z - image) <= PAIRED * std::abs(image.imag()); };
+        auto is_image = [&](const Zero& other) { return std::abs(other.z - image) <= PAIRED * std::abs(image.imag()); };
         if (std::none_of(zeros.begin(), zeros.end(), is_image)) zero.mirrored = true;
     }
 }
@@ -176,17 +115,22 @@ inline bool tilted_poles(std::vector<TiltedLevel> levels, const TiltedLeads& lea
     TiltedSums sums(levels);
     auto is_near = [&](const TiltedLevel& level) { return level.E < detail::NEAR_TILTED * window; };
     const int near = int(std::count_if(levels.begin(), levels.end(), is_near));
-    std::vector<detail::ZeroOfD> zeros = detail::starts(levels, near, leads, sums);
-    if (!detail::settle(zeros, near, leads, sums)) return false;
+    std::vector<Zero> zeros = detail::starts(levels, near, leads, sums);
+    const int every = int(levels.size());
+    auto slope = [&](PoleComplex z) {
+        sums.fill(z, 0, every);
+        return PoleComplex(sums.resolvents(near) - trace(sums.undressed(leads, z), sums.change(leads, z)));
+    };
+    if (!settle(zeros, slope)) return false;
     detail::complete_pairs(zeros);
-    for (const detail::ZeroOfD& zero : zeros)
+    for (const Zero& zero : zeros)
         if (!(zero.z.imag() <= detail::FEEDS * window)) return false;
     std::vector<int> all(zeros.size());
     std::iota(all.begin(), all.end(), 0);
     for (size_t first = 0; first < all.size(); first += POLES) {
-        const auto r = detail::residues(leads, sums, detail::load(zeros, all, first));
+        const auto r = detail::residues(leads, sums, load(zeros, all, first));
         for (int l = 0; l < POLES && first + l < all.size(); ++l) {
-            const detail::ZeroOfD& zero = zeros[first + l];
+            const Zero& zero = zeros[first + l];
             TiltedPole pole{zero.z, {}}, image{-std::conj(zero.z), {}};
             for (int k = 0; k < 4; ++k) {
                 pole.residue[k] = {r.at[0][k].re[l], r.at[0][k].im[l]};
