@@ -71,7 +71,7 @@ def _group(measured: dict[str, FloatArray]) -> dict[str, Any]:
         "mean_energies": float(energies.mean()),
         "mean_energies_without_quadrature": float(energies[rational].mean()),
         "sets_by_energies": {
-            str(number): int(count) for number, count in zip(numbers, sets, strict=True)
+            str(int(number)): int(count) for number, count in zip(numbers, sets, strict=True)
         },
         "sets_with_quadrature": int(np.sum(~rational)),
     }
