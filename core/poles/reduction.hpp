@@ -13,6 +13,9 @@
 
 namespace core {
 
+// Directions of which less than this (squared, relative) is new are left out of the model.
+constexpr double DROP = 1e-11;
+
 enum Symmetry { SYMMETRIC = 1, ANTISYMMETRIC = -1 };  // Aᵀ = ±A
 
 template <Symmetry SIGN>
@@ -26,7 +29,7 @@ protected:
     // Reduce n directions of norm 1 (a multiple of COLUMNS), without those of which less than `drop` (squared) is new:
     // of.row(d, N, K) writes the rows of direction d, of.seen(d, b) what the ends see of it.
     template <class Directions>
-    void reduce(int n, const Directions& of, double drop = 1e-11) {
+    void reduce(int n, const Directions& of, double drop = DROP) {
         rows.assign(n * 8, 0.0);
         for (auto* matrix : {&R, &L, &K, &Y, &A}) matrix->resize(size_t(n) * n);
         choose(n, of, drop);

@@ -107,10 +107,6 @@ inline bool has_all(const Resonances& found, const Starts& starts) {
     return starts.both <= found.both() && found.both() <= starts.both + found.spare;
 }
 
-}  // namespace detail
-
-namespace detail {
-
 // Where two starts have ended at one pole, `twin`, look for the other one once more: on the imaginary axis on either side of
 // it, elsewhere from its start without the vector of the one found.
 inline void look_again(Resonances& found, const Starts& starts, int again, int twin, const Levels& levels, const Leads& leads,

@@ -33,7 +33,7 @@ constexpr double AXIS = 1e-14;        // starts are so far below the real axis a
 
 // Where the levels' poles start: E + w†Tw with T = Σ/(1 − F Σ) of the far levels.
 inline std::vector<Zero> starts(const std::vector<TiltedLevel>& levels, int near, const TiltedLeads& leads,
-                                   TiltedSums& sums) {
+                                TiltedSums& sums) {
     std::vector<Zero> found;
     for (int first = 0; first < near; first += POLES) {
         PoleComplex z(0.0), w[8];
