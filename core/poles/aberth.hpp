@@ -26,6 +26,13 @@ struct Zero {
     bool settled = false;
 };
 
+// 0, 1, … before `count`.
+inline std::vector<int> first_numbers(size_t count) {
+    std::vector<int> numbers(count);
+    std::iota(numbers.begin(), numbers.end(), 0);
+    return numbers;
+}
+
 // POLES of some zeros, in lanes; the last one fills up.
 inline PoleComplex load(const std::vector<Zero>& zeros, const std::vector<int>& which, size_t first) {
     PoleComplex z;
@@ -58,8 +65,7 @@ inline void add_others(const std::vector<Zero>& zeros, PoleComplex z, PoleComple
 // are not in the list are to be left out of f'/f.
 template <class Slope>
 inline bool settle(std::vector<Zero>& zeros, Slope slope) {
-    std::vector<int> left(zeros.size());
-    std::iota(left.begin(), left.end(), 0);
+    std::vector<int> left = first_numbers(zeros.size());
     for (int step = 0; step < ABERTH_STEPS && !left.empty(); ++step) {
         std::vector<Amplitude> next(zeros.size());
         for (size_t first = 0; first < left.size(); first += POLES) {

@@ -47,19 +47,20 @@ public:
         M.fill(levels, R, S, z);
     }
 
-    // Tr M⁻¹M' at the energies `at`: of M⁻¹ = Σ x xᵀ/Δ, x the columns of L⁻ᵀ.
-    PoleComplex slope_of_determinant(const Leads& leads, PoleComplex at) {
+    // f'/f of f = det M ∏(z² − E²) over some levels at the energies `at`, Tr M⁻¹M' + Σ 1/(z − E) + 1/(z + E).  Of the trace
+    // M⁻¹ = Σ x xᵀ/Δ, x the columns of L⁻ᵀ.
+    PoleComplex slope_of_determinant(const Leads& leads, const std::vector<int>& some, PoleComplex at) {
         z = at;
         factor_at_energies(leads.inverse);
         PoleComplex total(0.0);
+        for (int n : some) total = total + R.of[n].even;
         for (int k = 0; k < 8; ++k) {
             t.fill(PoleComplex(0.0));
             t[k] = PoleComplex(1.0);
             M.solve_upper(t);
             norm = PoleComplex(0.0);
             for (int n = 0; n < levels.size(); ++n) {
-                auto [above, below] = at_level(n, t);
-                PoleComplex up = above * R.of[n].up, down = below * R.of[n].down;
+                auto [up, down] = answer(n);
                 norm = norm + up * up + down * down;
             }
             add_slopes(leads);
@@ -78,8 +79,7 @@ public:
         size = inverse(root(size));
         for (auto& entry : t) entry = entry * size;
         for (int n = 0, half = levels.size(); n < half; ++n) {
-            auto [above, below] = at_level(n, t);
-            PoleComplex up = above * R.of[n].up, down = below * R.of[n].down;
+            auto [up, down] = answer(n);
             for (int l = 0; l < count; ++l) vectors.set(first + l, n, get(up, l)), vectors.set(first + l, half + n, get(down, l));
         }
     }
@@ -152,6 +152,11 @@ private:
         for (int i = 0; i < 4; ++i) first = first + y[i] * PoleReal(weight[i]);
         for (int i = 4; i < 8; ++i) second = second + y[i] * PoleReal(weight[i]);
         return {first + second, first - second};
+    }
+    // R Uᵀ t at ±E of a level.
+    std::pair<PoleComplex, PoleComplex> answer(int n) const {
+        auto [above, below] = at_level(n, t);
+        return {above * R.of[n].up, below * R.of[n].down};
     }
 
     // Add tᵀM't less what the levels of x give to the norm.

@@ -74,7 +74,9 @@ inline void reflect(Resonances& of, int k) {
 // left out: near the axis another's image may stand for it.  Vectors of equal poles (Kramers pairs at B = 0)
 // are made orthogonal; one that is not new is left out: of these also return the last central one or, if there is
 // none, the last, and which it equals, or −1.  Equal poles that are faint stay: they carry nothing.
-inline std::pair<int, int> right_half(Resonances& found, const Levels& levels, const Leads& leads) {
+//
+// It is whole if there are as many as `both` halves have; what is too faint may stand twice.
+inline std::pair<int, int> right_half(Resonances& found, int both, const Levels& levels, const Leads& leads) {
     int again = -1, twin = -1;
     found.order.clear(), found.spare = 0;
     for (bool central : {false, true}) {
@@ -99,12 +101,8 @@ inline std::pair<int, int> right_half(Resonances& found, const Levels& levels, c
         }
         if (!central) found.paired = int(found.order.size());
     }
+    found.whole = both <= found.both() && found.both() <= both + found.spare;
     return {again, twin};
-}
-
-// Whether as many poles are found as there are; what is too faint may stand twice.
-inline bool has_all(const Resonances& found, const Starts& starts) {
-    return starts.both <= found.both() && found.both() <= starts.both + found.spare;
 }
 
 // Where two starts have ended at one pole, `twin`, look for the other one once more: on the imaginary axis on either side of
@@ -121,25 +119,17 @@ inline void look_again(Resonances& found, const Starts& starts, int again, int t
         for (auto& entry : pole.t) entry = 0.0;
         orthogonalise(found, again, twin, levels, leads);
         iterate(found.poles, found.vectors, {again}, leads, batch);
-        right_half(found, levels, leads);
-        found.whole = has_all(found, starts);
+        right_half(found, starts.both, levels, leads);
         if (found.whole) return;
     }
 }
 
 // Take the starts to where the poles are, all at once, and give each its vector; false if they do not settle.
-inline bool start_again(Starts& starts, const Levels& levels, const Leads& leads, Batch& batch) {
+inline bool start_again(Starts& starts, const Leads& leads, Batch& batch) {
     std::vector<Zero> zeros;
     for (const Pole& pole : starts.poles) zeros.push_back({pole.z, pole.z.real() > CENTRE});
-    auto slope = [&](PoleComplex z) {
-        PoleComplex total = batch.slope_of_determinant(leads, z);
-        for (int n : starts.near)
-            total = total + inverse(PoleComplex(z.re - levels.E[n], z.im)) + inverse(PoleComplex(z.re + levels.E[n], z.im));
-        return total;
-    };
-    if (!settle(zeros, slope)) return false;
-    std::vector<int> all(zeros.size());
-    std::iota(all.begin(), all.end(), 0);
+    if (!settle(zeros, [&](PoleComplex z) { return batch.slope_of_determinant(leads, starts.near, z); })) return false;
+    const std::vector<int> all = first_numbers(zeros.size());
     for (size_t first = 0; first < all.size(); first += POLES) {
         batch.z = load(zeros, all, first);
         batch.find_vectors(leads, starts.vectors, int(first), int(std::min<size_t>(POLES, all.size() - first)));
@@ -153,17 +143,13 @@ inline bool start_again(Starts& starts, const Levels& levels, const Leads& leads
 // Iterate the poles of `start_poles`; where one is lost, in other ways too.
 inline Resonances find_poles(Starts& starts, const Levels& levels, const Leads& leads, Batch& batch) {
     Resonances found{starts.poles, starts.vectors, {}};
-    std::vector<int> all(found.poles.size());
-    std::iota(all.begin(), all.end(), 0);
     auto iterate_all = [&] {
-        iterate(found.poles, found.vectors, all, leads, batch);
-        const auto twins = detail::right_half(found, levels, leads);
-        found.whole = detail::has_all(found, starts);
-        return twins;
+        iterate(found.poles, found.vectors, first_numbers(found.poles.size()), leads, batch);
+        return detail::right_half(found, starts.both, levels, leads);
     };
     auto [again, twin] = iterate_all();
     if (!found.whole && again >= 0) detail::look_again(found, starts, again, twin, levels, leads, batch);
-    if (!found.whole && detail::start_again(starts, levels, leads, batch)) {
+    if (!found.whole && detail::start_again(starts, leads, batch)) {
         found.poles = starts.poles, found.vectors = starts.vectors;
         iterate_all();
     }

@@ -42,7 +42,7 @@ inline std::vector<Zero> starts(const std::vector<TiltedLevel>& levels, int near
             z.re.set(l, level.E);
             for (int i = 0; i < 8; ++i) w[i].re.set(l, level.w[i].re), w[i].im.set(l, level.w[i].im);
         }
-        sums.fill(z, near, int(levels.size()));
+        sums.fill(z, near);
         EndSquares sigma;
         fill_ends(sigma, [&](int end, int i, int j) { return leads.at(z, end, i, j); });
         const EndSquares T = product(sigma, sums.undressed(leads, z));
@@ -80,14 +80,13 @@ inline void complete_pairs(std::vector<Zero>& zeros) {
 
 // Residues of the conductances at POLES poles, of electrons, then of holes that come in.
 inline Conductances<PoleComplex> residues(const TiltedLeads& leads, TiltedSums& sums, PoleComplex z) {
-    const int all = int(sums.E.size());
-    sums.fill(z, 0, all);
+    sums.fill(z);
     const EndSquares D = sums.undressed(leads, z);
     const PoleComplex over = -inverse(trace(D, sums.change(leads, z)));
     EndSquares rho = product(D, sums.F), gamma;
     fill_ends(gamma, [&](int end, int i, int j) { return leads.gamma_at(z, end, i, j); });
     rho = product(product(gamma, rho), gamma);
-    sums.fill(conj(z), 0, all);
+    sums.fill(conj(z));
     EndSquares mirror = product(sums.undressed(leads, conj(z)), sums.F);
     from_majorana(rho.entry);
     from_majorana(mirror.entry);
@@ -116,17 +115,15 @@ inline bool tilted_poles(std::vector<TiltedLevel> levels, const TiltedLeads& lea
     auto is_near = [&](const TiltedLevel& level) { return level.E < detail::NEAR_TILTED * window; };
     const int near = int(std::count_if(levels.begin(), levels.end(), is_near));
     std::vector<Zero> zeros = detail::starts(levels, near, leads, sums);
-    const int every = int(levels.size());
     auto slope = [&](PoleComplex z) {
-        sums.fill(z, 0, every);
+        sums.fill(z);
         return PoleComplex(sums.resolvents(near) - trace(sums.undressed(leads, z), sums.change(leads, z)));
     };
     if (!settle(zeros, slope)) return false;
     detail::complete_pairs(zeros);
     for (const Zero& zero : zeros)
         if (!(zero.z.imag() <= detail::FEEDS * window)) return false;
-    std::vector<int> all(zeros.size());
-    std::iota(all.begin(), all.end(), 0);
+    const std::vector<int> all = first_numbers(zeros.size());
     for (size_t first = 0; first < all.size(); first += POLES) {
         const auto r = detail::residues(leads, sums, load(zeros, all, first));
         for (int l = 0; l < POLES && first + l < all.size(); ++l) {

@@ -98,8 +98,9 @@ public:
         }
     }
 
-    // Of the levels from `first` to before `last`.
-    void fill(PoleComplex z, int first, int last) {
+    // Of the levels from `first` on.
+    void fill(PoleComplex z, int first = 0) {
+        const int last = int(E.size());
         for (int n = first; n < last; ++n) {
             PoleComplex up = inverse(PoleComplex(z.re - E[n], z.im)), down = inverse(PoleComplex(z.re + E[n], z.im));
             PoleComplex up_slope = up * up, down_slope = down * down;

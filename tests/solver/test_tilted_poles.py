@@ -21,16 +21,12 @@ PARTICLE_HOLE = np.kron(np.eye(2), hamiltonian.PARTICLE_HOLE)
 angles = st.sampled_from([1e-3, 0.4, np.pi / 2, -2.0])
 
 
-def nodes(window, count=10):
-    return window * tilted_average._nodes(count) + 1j * tilted_average.HEIGHT * window / count
-
-
 def ends(wire, mu, B, theta, z):
     return compiled.isolated_ends([wire], np.array([mu]), np.array([B]), z, theta)[0, 0, 0]
 
 
 def levels(wire, mu, B, theta, window, count=10):
-    z = nodes(window, count)
+    z = tilted_average._above_axis(window, count)
     return core.internals.tilted_levels(z, ends(wire, mu, B, theta, z))
 
 
@@ -66,7 +62,7 @@ def average_of(wire, B, theta):
 def poles_of(wire, mu, B, theta, more=0.0):
     """Return the poles of the ends' F and `more`, their residues, and the average."""
     average = average_of(wire, B, theta)
-    z = nodes(average.window)
+    z = tilted_average._above_axis(average.window, 10)
     F = ends(wire, mu, B, theta, z) + more
     leads = average.sigma, average.slope
     found = core.tilted_poles(z, F[None], *leads, wire.rotated_hopping, average.window)
@@ -117,7 +113,7 @@ def test_a_level_that_leads_hardly_reach_adds_hardly_anything():
     w = rng.normal(size=8) + 1j * rng.normal(size=8)
     w *= 1e-4 / np.linalg.norm(w)
     image = PARTICLE_HOLE @ w.conj()
-    at = nodes(average.window)[:, None, None]
+    at = tilted_average._above_axis(average.window, 10)[:, None, None]
     more = np.outer(w, w.conj()) / (at - 0.01) + np.outer(image, image.conj()) / (at + 0.01)
     other, with_level, _ = poles_of(wire, 0.2, B, theta, more)
     assert len(other) == len(z) + 2
@@ -128,7 +124,7 @@ def test_a_level_that_leads_hardly_reach_adds_hardly_anything():
 
 def test_data_of_no_wire_make_no_model():
     average = average_of(random_wire(3), 0.5, 0.7)
-    z = nodes(average.window)
+    z = tilted_average._above_axis(average.window, 10)
     F = np.full((1, len(z), 8, 8), np.nan + 0j)
     hop = random_wire(3).rotated_hopping
     poles, residues = core.tilted_poles(z, F, average.sigma, average.slope, hop, average.window)

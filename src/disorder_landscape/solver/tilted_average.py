@@ -87,8 +87,7 @@ class _Average:
 
         The error is infinite where there is no model.
         """
-        x = self.window * _nodes(nodes)
-        z = x + 1j * HEIGHT * self.window / nodes
+        z = _above_axis(self.window, nodes)
         wires, theta = [self.wire], self.theta
         F = compiled.isolated_ends(wires, mu, self.B, z, theta)[0, 0]
         bare = compiled.bare_conductance(wires, mu, self.B, self.real, theta)[0, :, 0]
@@ -121,6 +120,11 @@ class _Average:
 def _nodes(count: int, after: float = 0.5) -> FloatArray:
     """Return sin(π(k + after)/2·count): at ½ those of 2·count Chebyshev nodes that are positive."""
     return np.asarray(np.sin(np.pi * (np.arange(count) + after) / (2 * count)))
+
+
+def _above_axis(window: float, count: int) -> ComplexArray:
+    """Return the energies for the levels, shape (count,), in meV."""
+    return np.asarray(window * (_nodes(count) + 1j * HEIGHT / count))
 
 
 def _on_the_ends(sigma: ComplexArray) -> ComplexArray:
