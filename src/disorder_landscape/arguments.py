@@ -16,7 +16,10 @@ class ArgumentError(ValueError):
     """An argument, option or file that cannot be used; its message is one sentence."""
 
     def __init__(self, name: str, must: str, but: str) -> None:
-        super().__init__(f"Argument {name} must {must}, but {but}.")
+        said = f"Argument {name} must {must}, but {but}."
+        super().__init__(
+            " ".join(said.splitlines())
+        )  # names and words of files may have line breaks
         self.parts = name, must, but
 
     def __reduce__(self) -> tuple[type[ArgumentError], tuple[str, str, str]]:
