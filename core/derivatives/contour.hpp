@@ -1,4 +1,4 @@
-// Where the thermal average of a derivative is summed: on a line above the real axis, and at poles.
+// Where the thermal average of a derivative is summed: at points of a path (path.hpp), and at poles.
 //
 // With Ḡ(z) = G(z*)*, probabilities are p_ab = Tr[Γ_a G_ab Γ_b Ḡ_ba] on the real axis, and a change of the wire alone
 // makes them change by −2 Re of
@@ -6,13 +6,8 @@
 //     Tr[∂M Q_ab],   Q_ab = G_·b m G_a·,   m = Γ_b Ḡ_ba Γ_a.
 //
 // Above the real axis G is analytic, Ḡ has simple poles at z_k* with the residues v̄v̄ᵀ, z_k and v the poles and vectors
-// of G (resonances.hpp), and the kernel K_V has its own at V + iπkT.  So the integral of any such f is
-//
-//     ∫ f dω = h Σ_j f(x_j + ia) + Σ_k 2πi Res_k f / (1 + exp(−2πi(z_k* − ia)/h)),   x_j = (j + ½)h,
-//
-// where the last factor is one for poles far below the line and zero for those far above it, and in between takes
-// away what a pole near the line puts into the sum.  What is left is of the order of exp(−2πa/h) from the poles of G
-// and exp(−2π(πkT − a)/h) from those of K.  There are no derivatives of residues, and no differences of poles.
+// of G (resonances.hpp), and the kernel K_V has its own at V + iπkT.  There are no derivatives of residues, and no differences of
+// poles.
 //
 // At the pole of a narrow level G is as large as 1/width, and the two columns of Q_ab are nearly the same imaginary
 // vector: all but a part width/kT of the residue drops out.  So z_k must be that of the very matrix of which G is the
@@ -27,40 +22,19 @@
 // leads.
 #pragma once
 
-#include <numbers>
-
 #include "../thermal/average.hpp"
+#include "path.hpp"
 
 namespace core {
 
-constexpr double HEIGHT = std::numbers::pi / 2;  // of the line, in kT: half way to the poles of the kernel
-// In kT, along the line and how far it goes beyond the plan's window.  Of 320 random derivatives half are within 2e-5 of
-// the largest; with steps of 0.75, 0.65 and 0.55 they are within 4e-5, 7e-6 and 3e-6.  Where the line ends with the window,
-// 64 to 74 of a hundred are within 1e-4, with this end 73 to 88, with 4 kT more 79 to 91.
-constexpr double STEP = 0.7, FURTHER = 1.9;
-constexpr double BEYOND = 3.0;                   // poles up to so many steps above the line are seen by it
 constexpr double NARROWEST = 1e-8;               // meV; poles of less width change no conductance and lose all digits
 
-// The line above the real axis.
-struct Line {
-    double height, step;
-    explicit Line(double kT) : height(HEIGHT * kT), step(STEP * kT) {}
-
-    Amplitude at(int j) const { return {(j + 0.5) * step, height}; }
-    Amplitude weight_of_pole(Amplitude z) const {
-        const Amplitude turn(0, 2 * std::numbers::pi);
-        return turn / (1.0 + std::exp(-turn * (z - Amplitude(0, height)) / step));
-    }
-    double end(const EnergyPlan& plan) const { return plan.window + FURTHER * plan.kT; }
-    bool sees(Amplitude z) const { return z.imag() < height + BEYOND * step; }
-};
-
 struct ContourPoint {
-    enum Kind { ON_LINE, POLE_OF_MODEL, POLE_OF_MATRIX };  // which of the two has z* for a pole
+    enum Kind { ABOVE_AXIS, ON_AXIS, POLE_OF_MODEL, POLE_OF_MATRIX };  // which of the two has z* for a pole
     Kind kind;
     Amplitude z, weight;
     bool mirrored;        // whether −z* counts, too
-    EndMatrix conjugate;  // Ḡ of the ends, or its residue, in the frame of the sites, in units of 1/t' and of meV/t'
+    EndMatrix conjugate;  // above the axis Ḡ of the ends, or its residue, in the frame of the sites, in units of 1/t' and of meV/t'
     // At a pole:
     Amplitude pole = 0.0;    // z_k = z*
     double isolation = 0.0;  // distance to the next one
@@ -114,7 +88,7 @@ inline double isolation(const Resonances& of, int p) {
 }
 
 // A pole's point; own is the model's G there.
-inline ContourPoint point_of_pole(const Pole& pole, const EndMatrix& own, const Line& line, const Leads& leads, double hop,
+inline ContourPoint point_of_pole(const Pole& pole, const EndMatrix& own, const Path& path, const Leads& leads, double hop,
                                   Amplitude broadening) {
     const Amplitude at = pole.z - broadening, z = std::conj(at);
     EndMatrix S = leads.inverse.at(pole.z), gamma = leads.gamma.at(z + broadening), columns{};  // v̄ and Γv̄
@@ -129,7 +103,7 @@ inline ContourPoint point_of_pole(const Pole& pole, const EndMatrix& own, const 
         for (int l = 0; l < 8; ++l) columns(k, 1) += gamma(k, l) * std::conj(v[l]);
     for (int k = 0; k < 8; ++k) width += columns(k, 1) * v[k];
     columns = from_chiral_rows(columns);
-    ContourPoint point{ContourPoint::POLE_OF_MODEL, z, line.weight_of_pole(z), true, {}};
+    ContourPoint point{ContourPoint::POLE_OF_MODEL, z, path.weight_of_pole(z), true, {}};
     point.pole = at, point.own = own;
     for (int k = 0; k < 8; ++k) point.y[k] = columns(k, 1), point.v[k] = std::sqrt(hop) * columns(k, 0);
     point.set_residue();
@@ -139,16 +113,16 @@ inline ContourPoint point_of_pole(const Pole& pole, const EndMatrix& own, const 
 
 }  // namespace detail
 
-// The points of one set, of a wire whose levels are broadened by so much.
-inline std::vector<ContourPoint> contour(const EnergyPlan& plan, double hop, const Resonances& poles, const Leads& leads, double width,
+// The points of one set, of a wire whose levels are broadened by so much, poles first, then as the path has them; with the Ḡ that the
+// model has.
+inline std::vector<ContourPoint> contour(const Path& path, double hop, const Resonances& poles, const Leads& leads, double width,
                                          Batch& b) {
-    const Line line(plan.kT);
     const Amplitude broadening(0, width);
     std::vector<ContourPoint> points;
     std::vector<int> seen;
     for (int n = 0; n < int(poles.order.size()); ++n) {
         Amplitude z = std::conj(poles.poles[poles.order[n]].z);
-        if (z.imag() > NARROWEST && line.sees(z + broadening) && z.real() < line.end(plan)) seen.push_back(n);
+        if (z.imag() > NARROWEST && path.sees(z + broadening)) seen.push_back(n);
     }
     // Call use(k, G at the k-th energy) for so many energies.
     auto for_green = [&](int count, const Cubic& inverse, auto energy, auto use) {
@@ -161,14 +135,15 @@ inline std::vector<ContourPoint> contour(const EnergyPlan& plan, double hop, con
     auto pole = [&](int k) -> const Pole& { return poles.poles[poles.order[seen[k]]]; };
     auto above = [&](int k) { return std::conj(pole(k).z) + 2.0 * broadening; };
     for_green(int(seen.size()), leads.inverse, above, [&](int k, const EndMatrix& G) {
-        points.push_back(detail::point_of_pole(pole(k), G, line, leads, hop, broadening));
+        points.push_back(detail::point_of_pole(pole(k), G, path, leads, hop, broadening));
         points.back().mirrored = seen[k] < poles.paired;
         points.back().isolation = detail::isolation(poles, poles.order[seen[k]]);
     });
-    int count = int(std::ceil(line.end(plan) / line.step));
-    for_green(count, leads.conjugate, [&](int k) { return line.at(k) - broadening; }, [&](int k, const EndMatrix& G) {
-        points.push_back({ContourPoint::ON_LINE, line.at(k), line.step, true, G});
+    for_green(int(path.above_axis.size()), leads.conjugate, [&](int k) { return path.above_axis[k].z - broadening; }, [&](int k, const EndMatrix& G) {
+        points.push_back({ContourPoint::ABOVE_AXIS, path.above_axis[k].z, path.above_axis[k].weight, true, G});
     });
+    for (const auto* some : {&path.next_to_gap, &path.above_gap})
+        for (const Path::Point& of : *some) points.push_back({ContourPoint::ON_AXIS, of.z, of.weight, true, {}});
     return points;
 }
 

@@ -88,7 +88,7 @@ public:
 
 // Bring up to REGISTER poles to those of the matrix; one that has an equal stays the model's, one that is lost is left out.
 // Levels that the ends hardly see the model may have at a wrong place, and what they carry is as little.
-inline void find_exact_poles(const GradientField& field, const Line& line, double mu, ContourPoint* points, int count, GradientRoom& room) {
+inline void find_exact_poles(const GradientField& field, const Path& path, double mu, ContourPoint* points, int count, GradientRoom& room) {
     using C = PointLanes::C;
     std::vector<ContourPoint> now(points, points + count);
     std::vector<bool> done;
@@ -111,7 +111,7 @@ inline void find_exact_poles(const GradientField& field, const Line& line, doubl
             if (done[l]) continue;
             ContourPoint& point = now[l];
             Amplitude shift = Batch::get(top, l) / Batch::get(slope, l), root = std::sqrt(Batch::get(slope, l)), to = point.z - shift;
-            done[l] = !(std::abs(to - points[l].pole) < MOST_OF_WAY * line.step) || !(to.imag() < 0);  // lost
+            done[l] = !(std::abs(to - points[l].pole) < MOST_OF_WAY * path.step) || !(to.imag() < 0);  // lost
             if (done[l]) continue;
             point.pole = to;
             for (int i = 0; i < 8; ++i) point.v[i] = std::conj(Batch::get(ends[i], l) / root);
@@ -121,7 +121,7 @@ inline void find_exact_poles(const GradientField& field, const Line& line, doubl
                 point.moved = std::abs(to - points[l].pole);
                 points[l] = point;
                 points[l].kind = ContourPoint::POLE_OF_MATRIX;
-                points[l].z = std::conj(to), points[l].weight = line.weight_of_pole(points[l].z);
+                points[l].z = std::conj(to), points[l].weight = path.weight_of_pole(points[l].z);
             }
         }
     }

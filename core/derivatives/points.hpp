@@ -7,6 +7,8 @@
 
 namespace core {
 
+inline bool is_at_pole(const ContourPoint& of) { return of.kind == ContourPoint::POLE_OF_MODEL || of.kind == ContourPoint::POLE_OF_MATRIX; }
+
 namespace detail {
 
 // Room for the points of one set.
@@ -15,6 +17,18 @@ struct GradientRoom {
     std::vector<PointLanes::R> by_V;  // (site, bias, conductance)
     std::vector<PointLanes::R> others;  // (BY_ENERGY + 1, bias, conductance)
 };
+
+// Find Ḡ(z) = G(z*)* of the ends at up to REGISTER points.
+inline void find_conjugates(const GradientField& field, double mu, ContourPoint* points, int count) {
+    std::vector<ContourPoint> below(points, points + count);
+    for (ContourPoint& point : below) point.z = std::conj(point.z);
+    using C = PointLanes::C;
+    const PointLanes at(field, mu, below.data(), count);
+    const auto G = attach_leads(eliminate_inner_sites<C, Symmetric4<C>>(view(field.wire), at.terms), at.leads.sigma);
+    for (int l = 0; l < count; ++l)
+        for (int i = 0; i < 8; ++i)
+            for (int j = 0; j < 8; ++j) points[l].conjugate(i, j) = std::conj(Batch::get(G(i, j), l));
+}
 
 // Up to REGISTER points of one set: what they add to the derivatives of COUNT probabilities.
 template <int COUNT>
@@ -31,6 +45,7 @@ class PointsOfSet {
         C plus = C(0.0), minus = C(0.0);  // with K_V and K_−V
     };
     std::vector<Weights> kernel;  // (bias,), zero where there is no point
+    C share = C(0.0), energy = C(0.0);  // s(z) of a shift, and z
     DriveAt<R> drives[COUNT];
     SiteSums<R> sums[COUNT];
 
@@ -50,10 +65,12 @@ class PointsOfSet {
     }
 
 public:
-    PointsOfSet(const GradientField& field, const EnergyPlan& plan, double mu, const ContourPoint* points, int count, GradientRoom& room)
+    PointsOfSet(const GradientField& field, const EnergyPlan& plan, double mu, const ContourPoint* points, int count, ShiftWeight shift,
+                GradientRoom& room)
         : field(field), points(points), count(count), room(room), at(field, mu, points, count), kernel(plan.biases) {
         for (int l = 0; l < count; ++l) {
             const ContourPoint& point = points[l];
+            Batch::set(share, l, shift.at(point.z)), Batch::set(energy, l, point.z);
             Amplitude mirrored = point.mirrored ? point.weight : 0.0;
             for (int v = 0; v < plan.biases; ++v) {
                 Batch::set(kernel[v].plus, l, point.weight * thermal_kernel(point.z, plan.bias[v], plan.kT));
@@ -63,12 +80,13 @@ public:
     }
 
     void add() {
-        if (std::all_of(points, points + count, [](const ContourPoint& of) { return of.kind != ContourPoint::ON_LINE; })) {
+        if (std::all_of(points, points + count, is_at_pole)) {
             add_poles();
             return;
         }
         auto meet = [&](Ends<R> G) {
             C scale = model_at_poles(G);
+            conjugate_on_axis(G);
             for (int k = 0; k < COUNT; ++k) {
                 drives[k].fill(G, at.leads, FROM[k], TO[k], 1.0);
                 for (auto& row : drives[k].m)
@@ -145,6 +163,13 @@ private:
         return scale;
     }
 
+    // On the real axis Ḡ is what G is.
+    void conjugate_on_axis(const Ends<R>& G) {
+        for (int l = 0; l < count; ++l)
+            for (int k = 0; k < 64 && points[l].kind == ContourPoint::ON_AXIS; ++k)
+                Batch::set(at.leads.conjugate[k / 8][k % 8], l, std::conj(Batch::get(G(k / 8, k % 8), l)));
+    }
+
     // All but what the derivatives by V say.
     void add_changes() const {
         C by[BY_ENERGY + 1][COUNT];
@@ -159,11 +184,12 @@ private:
             by[BY_ZEEMAN][k] = -minus_twice(s.along * R(per_meV));
             by[BY_ALPHA][k] = leads_do[LEAD_ALPHA] - minus_twice(turned);
             by[BY_GAMMA][k] = pairing(at.by_gamma);
-            by[BY_DELTA0][k] = pairing(at.by_delta0);
+            const C broadened(energy.re, energy.im + field.of.dissipation);  // of a common scale of Δ₀ and all energies:
+            by[BY_DELTA0][k] = leads_do[LEAD_ENERGY] * energy + minus_twice(broadened * s.one) * R(per_meV);
             by[BY_LEAD_ZEEMAN][k] = leads_do[LEAD_ZEEMAN];
             C of_wire = pairing(at.by_energy);
             by[BY_DISSIPATION][k] = C(-of_wire.im, of_wire.re);
-            by[BY_ENERGY][k] = leads_do[LEAD_ENERGY] + of_wire;
+            by[BY_ENERGY][k] = (leads_do[LEAD_ENERGY] + of_wire) * share;
         }
         for (int change = BY_ZEEMAN; change < BY_ENERGY; ++change)
             if (change != BY_DISSIPATION || COUNT == WITH_RETURNS) add_to_others(change, by[change]);

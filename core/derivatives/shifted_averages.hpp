@@ -1,4 +1,11 @@
 // The derivatives of closed-form averages by the bias and by kT, which enter through the kernel alone.
+//
+// A shift of all energies of a wire and its leads shifts p(ω), which has the derivative by the bias for its average.  At Δ₀ such a
+// derivative grows beyond all bounds, so where the window reaches it the shift has a weight s(ω) that is zero there:
+//
+//     ∫ s p' K_V dω = ∂/∂V ∫ s p K_V dω − ∫ s' p K_V dω,    s = 1 − (ω/Δ₀)²,
+//
+// and the model of p, of poles and a rest, is one of s p and of s' p, too.
 #pragma once
 
 #include "../thermal/average.hpp"
@@ -12,8 +19,52 @@ enum Change { BY_MU, BY_ZEEMAN, BY_ALPHA, BY_GAMMA, BY_DELTA0, BY_LEAD_ZEEMAN, B
 constexpr int CHANGES = 10, THROUGH_KERNEL = 2;
 constexpr double SHIFT = 2e-3;  // in kT: of bias and kT to either side, for the difference of closed forms
 
-// What the closed form of sets of so many nodes takes for the derivatives by the bias and by kT.
+// s and s' of a shift; 1 and 0 where the window ends below the gap.
+struct ShiftWeight {
+    double over_square;  // 1/Δ₀² or 0
+    template <class N>
+    N at(N omega) const { return 1.0 - omega * omega * over_square; }
+    template <class N>
+    N slope(N omega) const { return -2.0 * omega * over_square; }
+};
+
+namespace detail {
+
+// A model times a function s(ω) that is real on the real axis, and even, or odd.
+template <class Weight>
+inline RationalConductances times(const EnergyPlan& plan, const RationalConductances& of, bool odd, Weight s) {
+    RationalConductances to{PoleTerms(of.poles.count), {}};
+    std::copy(of.poles.values.begin(), of.poles.values.end(), to.poles.values.begin());
+    for (int n = 0; n < of.poles.count; ++n) {
+        const Amplitude at = s(Amplitude(of.poles.x[n], of.poles.y[n]));
+        for (int hole = 0; hole < 2; ++hole)
+            for (int k = 0; k < 4; ++k) {
+                Amplitude r = at * Amplitude(of.poles.re[hole][k][n], of.poles.im[hole][k][n]);
+                if (odd && hole) r = -r;
+                to.poles.re[hole][k][n] = r.real(), to.poles.im[hole][k][n] = r.imag();
+            }
+    }
+    for (int k = 0; k < 4; ++k) to.rest[k].assign(of.rest[k].size(), 0.0);
+    const std::vector<double> omega = plan.smooth_energies();
+    for (size_t first = 0; first < omega.size(); first += COLUMNS) {
+        Columns energies = 0.0, before[4], after[4];
+        for (size_t l = 0; l < COLUMNS && first + l < omega.size(); ++l) energies.set(int(l), omega[first + l]);
+        sum_poles(of.poles, energies, before), sum_poles(to.poles, energies, after);
+        for (size_t l = 0; l < COLUMNS && first + l < omega.size(); ++l)
+            for (int k = 0; k < 4; ++k) {
+                double whole = of.rest[k][first + l] + before[k][int(l)];
+                to.rest[k][first + l] = s(Amplitude(omega[first + l])).real() * whole - after[k][int(l)];
+            }
+    }
+    return to;
+}
+
+}  // namespace detail
+
+// What the closed form of sets of one plan takes for the derivatives by the bias and by kT, and for a shift.
 struct ShiftedAverages {
+    EnergyPlan plan;
+    ShiftWeight weight;
     struct Shifted {
         std::vector<double> bias;
         double kT;
@@ -21,7 +72,7 @@ struct ShiftedAverages {
     };
     Shifted to[THROUGH_KERNEL][2];
 
-    ShiftedAverages(const EnergyPlan& plan) {
+    ShiftedAverages(const EnergyPlan& of) : plan(of), weight{of.reaches_gap() ? 1 / (of.gap * of.gap) : 0.0} {
         for (int by = 0; by < THROUGH_KERNEL; ++by)
             for (int side = 0; side < 2; ++side) {
                 double shift = plan.kT * (side == 0 ? -SHIFT : SHIFT);
@@ -32,15 +83,24 @@ struct ShiftedAverages {
                 }
             }
     }
-    // Write the derivatives of one set, of each of the plan's biases and the conductances, to others.
-    void write(const RationalConductances& of, double kT, double* others) const {
-        size_t values = to[0][0].bias.size() * 4;
-        std::vector<double> below(values), above(values);
-        for (int by = 0; by < THROUGH_KERNEL; ++by) {
-            of.average(to[by][0].weights, to[by][0].bias, to[by][0].kT, below.data());
-            of.average(to[by][1].weights, to[by][1].bias, to[by][1].kT, above.data());
-            for (size_t v = 0; v < values; ++v) others[v * CHANGES + BY_BIAS + by] = (above[v] - below[v]) / (2 * SHIFT * kT);
-        }
+    // Return the derivatives of one set by the bias or by kT, shape (bias, conductance).
+    std::vector<double> derivatives(const RationalConductances& of, Change change) const {
+        const auto& sides = to[change - BY_BIAS];
+        std::vector<double> below(4 * size_t(plan.biases)), above = below;
+        of.average(sides[0].weights, sides[0].bias, sides[0].kT, below.data());
+        of.average(sides[1].weights, sides[1].bias, sides[1].kT, above.data());
+        for (size_t v = 0; v < above.size(); ++v) above[v] = (above[v] - below[v]) / (2 * SHIFT * plan.kT);
+        return above;
+    }
+    // Return what a shift of all energies with the weight s does.
+    std::vector<double> of_shift(const RationalConductances& of) const {
+        if (!plan.reaches_gap()) return derivatives(of, BY_BIAS);
+        auto slope = detail::times(plan, of, true, [&](Amplitude omega) { return weight.slope(omega); });
+        auto found = derivatives(detail::times(plan, of, false, [&](Amplitude omega) { return weight.at(omega); }), BY_BIAS);
+        std::vector<double> by_slope(found.size());
+        slope.average(plan.weights, plan.bias, plan.kT, by_slope.data());
+        for (size_t v = 0; v < found.size(); ++v) found[v] -= by_slope[v];
+        return found;
     }
 };
 

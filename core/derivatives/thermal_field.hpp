@@ -21,13 +21,14 @@ namespace detail {
 // ω − Σ(ω) and its derivatives at a complex energy, in meV.
 struct PairingChanges {
     Amplitude normal, anomalous;
-    Amplitude by_gamma[2], by_delta0[2], by_energy[2];  // of both
+    Amplitude by_gamma[2], by_energy[2];  // of both
 
     PairingChanges(const Wire& wire, Amplitude z) {
-        Amplitude over = 1.0 / std::sqrt(wire.delta0 * wire.delta0 - z * z), cube = over * over * over;
+        Amplitude root = std::sqrt(wire.delta0 * wire.delta0 - z * z);
+        if (z.imag() == 0) root.imag(-std::abs(root.imag()));  // above the gap; Re z ≥ 0
+        Amplitude over = 1.0 / root, cube = over * over * over;
         normal = z + wire.gamma * z * over, anomalous = wire.gamma * wire.delta0 * over;
         by_gamma[0] = z * over, by_gamma[1] = wire.delta0 * over;
-        by_delta0[0] = -wire.gamma * wire.delta0 * z * cube, by_delta0[1] = wire.gamma * over - wire.gamma * wire.delta0 * wire.delta0 * cube;
         by_energy[0] = 1.0 + wire.gamma * over + wire.gamma * z * z * cube, by_energy[1] = wire.gamma * wire.delta0 * z * cube;
     }
 };
@@ -66,7 +67,7 @@ struct PointLanes {
 
     Terms<C> terms{};
     LeadsAt<R> leads{};
-    C by_gamma[2], by_delta0[2], by_energy[2];  // the derivatives of normal and anomalous, in units of t'
+    C by_gamma[2], by_energy[2];  // the derivatives of normal and anomalous, in units of t'
 
     PointLanes(const GradientField& field, double mu, const ContourPoint* points, int count) {
         for (int l = 0; l < REGISTER; ++l) {
@@ -75,7 +76,7 @@ struct PointLanes {
             Batch::set(terms.kinetic, l, (2 * field.of.hopping - mu) / field.hop);
             Batch::set(terms.normal, l, pairing.normal / field.hop), Batch::set(terms.anomalous, l, pairing.anomalous / field.hop);
             for (int k = 0; k < 2; ++k) {
-                Batch::set(by_gamma[k], l, pairing.by_gamma[k] / field.hop), Batch::set(by_delta0[k], l, pairing.by_delta0[k] / field.hop);
+                Batch::set(by_gamma[k], l, pairing.by_gamma[k] / field.hop);
                 Batch::set(by_energy[k], l, pairing.by_energy[k] / field.hop);
             }
             leads.set(l, at, field.leads, field.slopes);

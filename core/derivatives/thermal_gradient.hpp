@@ -1,8 +1,14 @@
 // The conductances at a finite temperature and their derivatives by every site's V and by the parameters.
 //
-// The levels and poles of a set are those of thermal/conductance.hpp; the sums are explained in contour.hpp and
-// answers.hpp.  At each point all probabilities are differentiated, and all biases share that: they enter by the kernel alone.  The derivative by the bias is found in two ways, through the kernel and through ∂M/∂ω of all sites,
-// which have nothing in common: their difference is the error estimate.
+// The levels and poles of a set are those of thermal/conductance.hpp; the sums are explained in path.hpp, contour.hpp and
+// answers.hpp.  At each point all probabilities are differentiated, and all biases share that: they enter by the kernel alone.
+// What a shift of all energies does is found in two ways, through the kernel and through ∂M/∂ω of all sites, which have nothing in
+// common: their difference is the error estimate.
+//
+// Next to the gap ∂p/∂Δ₀ grows beyond all bounds.  But p(ω) stays what it is if Δ₀ and all energies, Σ among them, are scaled by the
+// same factor, but for what ω itself does in ω − H − Σ(ω) and in the leads.  With f for that, ∂M = ω + iΓ_d in the wire,
+//
+//     Δ₀ ∂/∂Δ₀ ∫ p K_V dω = ∫ f K_V dω − (V ∂/∂V + kT ∂/∂kT + Γ_d ∂/∂Γ_d) ∫ p K_V dω.
 #pragma once
 
 #include <map>
@@ -16,12 +22,28 @@ struct ThermalGradientArrays {
     double *by_V, *others;
 };
 
-// Fill out the derivatives of one set but for those through the kernel, which are there, and return how far the two
-// derivatives by the bias are apart, in e²/h per kT.
-inline double gradient_of_set(const detail::GradientField& field, const EnergyPlan& plan, double mu, std::vector<ContourPoint> points,
-                              double* by_V, double* others) {
+// What all sets have in common of which the models have so many nodes.
+struct GradientRules {
+    ShiftedAverages averages;
+    Path path;
+
+    GradientRules(const Grid& grid, double kT, int nodes, const Wire& wire)
+        : averages(PlanKey(grid, kT, nodes, wire).plan(grid, kT)), path(path_of(averages.plan, window_of(grid.omega, grid.omega_count, kT), wire)) {}
+
+private:
+    static Path path_of(const EnergyPlan& plan, double window, const Wire& wire) {
+        if (!plan.reaches_gap()) return Path(window, plan.kT);
+        return Path(window, plan.kT, wire.delta0, std::max(resolved_up_to(wire, plan.nodes), LEAST_RESOLVED) - BEFORE);
+    }
+};
+
+// Fill out the derivatives of one set, and return how far apart the two of a shift are, in e²/h per kT.
+inline double gradient_of_set(const detail::GradientField& field, const GradientRules& rules, const RationalConductances& model, double mu,
+                              std::vector<ContourPoint> points, double* by_V, double* others) {
     using namespace detail;
     static thread_local GradientRoom room;
+    const EnergyPlan& plan = rules.averages.plan;
+    const Path& path = rules.path;
     size_t sites = field.of.sites, values = size_t(plan.biases) * 4;
     room.sites.resize(sites);
     room.by_V.assign(sites * values, PointLanes::R(0.0)), room.others.assign((BY_ENERGY + 1) * values, PointLanes::R(0.0));
@@ -29,14 +51,20 @@ inline double gradient_of_set(const detail::GradientField& field, const EnergyPl
         for (size_t first = from; first < to; first += REGISTER) use(first, int(std::min(to - first, size_t(REGISTER))));
     };
     auto add = [&](size_t first, int count) {
-        if (field.of.dissipation > 0) PointsOfSet<WITH_RETURNS>(field, plan, mu, &points[first], count, room).add();
-        else PointsOfSet<PROBABILITIES>(field, plan, mu, &points[first], count, room).add();
+        const ContourPoint* some = &points[first];
+        bool absorbed = field.of.dissipation > 0 || some->z.real() > field.of.delta0;  // by levels or the parent
+        if (absorbed) PointsOfSet<WITH_RETURNS>(field, plan, mu, some, count, rules.averages.weight, room).add();
+        else PointsOfSet<PROBABILITIES>(field, plan, mu, some, count, rules.averages.weight, room).add();
     };
-    size_t poles = std::count_if(points.begin(), points.end(), [](const ContourPoint& of) { return of.kind != ContourPoint::ON_LINE; });
-    in_lanes(0, poles, [&](size_t first, int count) { find_exact_poles(field, Line(plan.kT), mu, &points[first], count, room); });
+    const size_t poles = std::count_if(points.begin(), points.end(), is_at_pole);
+    const size_t on_axis = poles + path.above_axis.size(), above_gap = on_axis + path.next_to_gap.size();
+    in_lanes(0, poles, [&](size_t first, int count) { find_exact_poles(field, path, mu, &points[first], count, room); });
     leave_out_twins(points);
+    if (path.reaches_gap())
+        in_lanes(poles, on_axis, [&](size_t first, int count) { find_conjugates(field, mu, &points[first], count); });
     in_lanes(0, poles, add);
-    in_lanes(poles, points.size(), add);
+    in_lanes(poles, above_gap, add);
+    in_lanes(above_gap, points.size(), add);
     auto total = [](const PointLanes::R& x) {
         double sum = 0.0;
         for (int l = 0; l < REGISTER; ++l) sum += x[l];
@@ -44,16 +72,21 @@ inline double gradient_of_set(const detail::GradientField& field, const EnergyPl
     };
     for (size_t v = 0; v < values; ++v)
         for (size_t n = 0; n < sites; ++n) by_V[v * sites + n] = 2 / field.hop * total(room.by_V[n * values + v]);
+    const auto by_bias = rules.averages.derivatives(model, BY_BIAS), by_kT = rules.averages.derivatives(model, BY_KT);
+    const auto of_shift = rules.averages.of_shift(model);
     double error = 0.0;
     for (size_t v = 0; v < values; ++v) {
         double* to = others + v * CHANGES;
+        to[BY_BIAS] = by_bias[v], to[BY_KT] = by_kT[v];
         for (int change = 0; change <= BY_ENERGY; ++change) to[change] = total(room.others[change * values + v]);
         double kinetic = 2 * field.of.hopping - mu;
         for (size_t n = 0; n < sites; ++n) {
             to[BY_MU] -= by_V[v * sites + n];
             to[BY_ALPHA] -= field.hop_slope * (kinetic + field.of.V[n]) * by_V[v * sites + n];  // stretched with 1/t'
         }
-        error = largest(error, plan.kT * std::abs(to[BY_ENERGY] - to[BY_BIAS]));
+        double scaled = to[BY_DELTA0] - field.of.dissipation * to[BY_DISSIPATION];
+        to[BY_DELTA0] = (scaled - plan.bias[v / 4] * to[BY_BIAS] - plan.kT * to[BY_KT]) / field.of.delta0;
+        error = largest(error, plan.kT * std::abs(to[BY_ENERGY] - of_shift[v]));
     }
     return error;
 }
@@ -77,11 +110,9 @@ inline void thermal_gradient(const ThermalGradientGrid& at, double tolerance, do
                                               [&](int k) { return lead_self_energy(wire, grid.B[f], energy[k]); })
                             .broadened(wire.dissipation));
     }
-    const EnergyPlan plan(grid.omega, grid.omega_count, at.kT, NODES[0], Reach::WINDOW);  // of which the nodes are not looked at
-    std::map<int, ShiftedAverages> shifted;  // of each number of nodes
+    std::map<int, GradientRules> rules;
     for (const SetModel& model : models)
-        if (model.nodes > 0 && !shifted.contains(model.nodes))
-            shifted.try_emplace(model.nodes, PlanKey(grid, at.kT, model.nodes, wire).plan(grid, at.kT));
+        if (model.nodes > 0 && !rules.contains(model.nodes)) rules.try_emplace(model.nodes, grid, at.kT, model.nodes, wire);
     size_t values = size_t(grid.omega_count) * 4;
     in_parallel(grid.mu_count * grid.B_count, stop, [&](int set) {
         double *by_V = out.by_V + set * values * wire.sites, *others = out.others + set * values * CHANGES;
@@ -91,11 +122,12 @@ inline void thermal_gradient(const ThermalGradientGrid& at, double tolerance, do
             return;
         }
         int f = set % grid.B_count;
-        Levels levels(models[set].levels, plan.window);
+        const SetModel& model = models[set];
+        const GradientRules& of = rules.at(model.nodes);
+        Levels levels(model.levels, of.averages.plan.window);
         Batch batch(levels);
-        auto points = contour(plan, wire.rotated_hopping(), models[set].poles, leads[f], wire.dissipation, batch);
-        shifted.at(models[set].nodes).write(models[set].conductances, at.kT, others);
-        gradient_error[set] = gradient_of_set(fields[f], plan, grid.mu[set / grid.B_count], points, by_V, others);
+        auto points = contour(of.path, wire.rotated_hopping(), model.poles, leads[f], wire.dissipation, batch);
+        gradient_error[set] = gradient_of_set(fields[f], of, model.conductances, grid.mu[set / grid.B_count], points, by_V, others);
     });
 }
 

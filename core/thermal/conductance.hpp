@@ -208,10 +208,10 @@ class EnergyPlans {
 public:
     // asked(w): whether a wire has sets left.
     template <class Asked>
-    EnergyPlans(const Grid& grid, double kT, int round, Asked asked) {
+    EnergyPlans(const Grid& grid, double kT, int round, bool with_slopes, Asked asked) {
         for (int w = 0; w < grid.wire_count; ++w) {
             const Wire& wire = grid.wires[w];
-            int nodes = nodes_in_round(round, reach_of(grid.omega, grid.omega_count, kT, wire.delta0), wire);
+            int nodes = nodes_in_round(round, reach_of(grid.omega, grid.omega_count, kT, wire.delta0), wire, with_slopes);
             of_wire.push_back(nullptr);
             if (nodes == 0 || !asked(w)) continue;
             const PlanKey key(grid, kT, nodes, wire);
@@ -224,7 +224,8 @@ public:
 };
 
 // Fill G, shape (wire, mu, B, bias, 4), its estimated error and how many energies each set took, (wire, mu, B).
-// grid.omega holds the biases.  Where `models` is given, it is filled with the models that G is from.
+// grid.omega holds the biases.  Where `models` is given, it is filled with the models that G is from, which are good enough for
+// derivatives.
 inline void thermal_conductance(const Grid& grid, double kT, double tolerance, double growth_limit, double* G, double* error,
                                 double* energies, Stop& stop, std::vector<SetModel>* models = nullptr) {
     size_t total = size_t(grid.wire_count) * grid.mu_count * grid.B_count, values = size_t(grid.omega_count) * 4;
@@ -235,7 +236,8 @@ inline void thermal_conductance(const Grid& grid, double kT, double tolerance, d
     for (int round = 0; round < ROUNDS_OF_NODES; ++round) {
         size_t each = total / grid.wire_count;
         auto done = [&](double of) { return of <= tolerance; };
-        const EnergyPlans plans(grid, kT, round, [&](int w) { return !std::all_of(error + w * each, error + (w + 1) * each, done); });
+        const EnergyPlans plans(grid, kT, round, models != nullptr,
+                                [&](int w) { return !std::all_of(error + w * each, error + (w + 1) * each, done); });
         std::vector<SetIndex> sets;
         for (int w = 0; w < grid.wire_count; ++w)
             for (int f = 0; f < grid.B_count; ++f)

@@ -101,6 +101,15 @@ struct EnergyPlan {
     int nodes_below() const { return nodes + samples; }  // of the smooth part
     int nodes_above() const { return over.size(); }
     int smooth_values() const { return 2 * (nodes_below() + over.size()); }  // at ω_k, −ω_k, then at those above the gap
+    // Where they are.
+    std::vector<double> smooth_energies() const {
+        std::vector<double> found;
+        for (int sign : {1, -1})
+            for (int k = 0; k < nodes_below(); ++k) found.push_back(sign * omega[k < nodes ? k : k + CHECKS]);
+        for (int sign : {1, -1})
+            for (int k = 0; k < nodes_above(); ++k) found.push_back(sign * above[k]);
+        return found;
+    }
     double pole_limit() const { return reaches_gap() ? counted : NEAR * window; }  // Levels below it have poles.
 
     // Where on [−1, 1] an energy is, in the variable in which nodes are at equal distances, and back.

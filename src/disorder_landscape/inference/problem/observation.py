@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from disorder_landscape.arguments import number_in, reals, require
 from disorder_landscape.inference.problem.measurement import Measurement, simulated
 from disorder_landscape.inference.problem.unknowns import Unknowns, share_settings
-from disorder_landscape.model.parameters import NOISE_FLOOR, FloatArray, Nanowire
+from disorder_landscape.model.parameters import NOISE_FLOOR, FloatArray
 from disorder_landscape.model.quantities import CONDUCTANCES
 from disorder_landscape.solver import compiled, gradients
 
@@ -22,8 +22,6 @@ TRUSTED = 3e-3
 """Derivatives with a larger estimated error, as a share of the largest of their (μ, B), are not
 used: some two in a hundred. (With all of them one answer of ten at 0.001 e²/h had error bars that
 were half of what they should be along one direction.)"""
-TRUSTED_NEAR_GAP = 3e-2
-"""The same where the thermal window reaches the gap: the estimate is that of ∂/∂Δ₀ there."""
 DRAWS_OF_LINES = 10
 """Of some of the data, where many are missing."""
 POINTS_AT_ONCE = 4
@@ -152,14 +150,13 @@ class Observation:
     def exact_slopes(self, x: FloatArray) -> Slopes | None:
         """Return the data and their derivatives at x (unknown,), in closed form.
 
-        None where the closed form does not reach: in tilted fields, at T = 0, where the largest
-        bias is less than 8 kT below the gap, and where the wire leaks without its parent.
+        None where the closed form does not reach: in tilted fields, at T = 0, and where the wire
+        leaks without its parent.
         """
         device = self.unknowns.devices(x[None], self.measurement)[0]
         wire, at = device.wire, device.as_set_up(self.measurement)
-        if not _closed_form_has_slopes(wire, at):
+        if at.theta != 0 or at.temperature == 0 or not gradients.has_closed_form(wire):
             return None
-        trusted = _trusted(wire, at)
         G, slopes, doubt = [], [], []
         for points in range(0, at.mu.size, POINTS_AT_ONCE):
             some = slice(points, points + POINTS_AT_ONCE)
@@ -176,7 +173,7 @@ class Observation:
             G.append(found.conductance)
             slopes.append(np.nan_to_num(self.unknowns.slopes(x, part, found.by)))
             exact = found.error <= SOLVER_ERROR
-            doubt.append(np.where(exact, found.gradient_error / trusted, np.inf))
+            doubt.append(np.where(exact, found.gradient_error / TRUSTED, np.inf))
         slope = np.concatenate(slopes)[self.is_measured].T
         return Slopes(np.concatenate(G)[self.is_measured], slope, np.concatenate(doubt))
 
@@ -204,22 +201,6 @@ def _drawn(
     return [
         np.sort(rng.choice(axis, n, replace=False)) for axis, n in zip(axes, counts, strict=True)
     ]
-
-
-def _closed_form_has_slopes(wire: Nanowire, at: Measurement) -> bool:
-    """Return whether there are derivatives of a wire at these settings in closed form."""
-    if at.theta != 0 or at.temperature == 0:
-        return False
-    narrowest = wire.in_field(float(abs(at.B).max()))
-    return gradients.has_slopes(narrowest, at.bias, at.temperature)
-
-
-def _trusted(wire: Nanowire, at: Measurement) -> FloatArray:
-    """Return up to which estimated error derivatives are used, shape (B,)."""
-    far = [
-        gradients.has_closed_form(wire.in_field(float(B)), at.bias, at.temperature) for B in at.B
-    ]
-    return np.where(far, TRUSTED, TRUSTED_NEAR_GAP)
 
 
 def errors_variance(noise: ArrayLike) -> FloatArray:
