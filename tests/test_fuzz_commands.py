@@ -620,8 +620,8 @@ def _storable(G):
     """Return a dataset if netCDF can hold it, and a usual one otherwise."""
     if not isinstance(G, xr.Dataset):
         return MEASURED
-    G = G.compute()
-    try:
+    try:  # a warning is an error, too
+        G = G.compute()
         G.to_netcdf(io.BytesIO(), engine="h5netcdf")
     except Exception:  # it is no file, whatever is wrong with it
         return MEASURED

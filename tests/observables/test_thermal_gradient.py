@@ -261,6 +261,17 @@ def test_slopes_at_no_field_and_next_to_the_gap():
     assert found.gradient_error.item() < 0.1
 
 
+def test_above_one_kelvin_they_are_differences():
+    wire = random_wire(9, sites=6)
+    found = conductance_gradient(wire, 0.2, 0.3, 0.02, 2.0, parameters=["mu"])
+    h = 1e-3
+    moved = [replace(wire, potential=wire.potential - s) for s in (-h, h)]
+    down, up = (conductance(w, 0.2, 0.3, 0.02, 2.0).G_LL.item() for w in moved)
+    assert found["dG_LL_dmu"].item() == pytest.approx((up - down) / (2 * h), rel=1e-2)
+    assert not gradients.has_closed_form(wire, 2.0)
+    assert gradients.has_closed_form(wire, 1.0)
+
+
 def test_sets_without_a_model_have_differences(monkeypatch):
     wire = random_wire(9, sites=4)
     expected_of = conductance_gradient(wire, 0.2, [0.1, 0.3], 0.02)
