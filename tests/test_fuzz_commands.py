@@ -853,6 +853,10 @@ FOUND = {
         ("study", "plan.toml", "--output=results"),
         {"plan.toml": toml({**PLANS["accuracy"], "wires": 10**12})},
     ),
+    "a study for a Slurm that is not there": (
+        ("study", "plan.toml", "--output=results", "--executor=slurm", "--site=site.toml"),
+        {"plan.toml": toml(PLANS["accuracy"]), "site.toml": toml(SITE[""])},
+    ),
     "a study's kind of two lines": (
         ("study", "plan.toml", "--output=results"),
         {"plan.toml": toml({**PLANS["accuracy"], "kind": "a\nb"})},

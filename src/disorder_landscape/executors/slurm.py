@@ -165,17 +165,30 @@ def _submitted(folder: Path) -> list[str]:
 
 
 def _submit(texts: Sequence[str], folder: Path) -> list[str]:
-    """Submit scripts; return the numbers of the jobs, which are kept before the next is."""
-    folder.mkdir(parents=True, exist_ok=True)
+    """Submit scripts; return the numbers of the jobs, which are kept before the next is.
+
+    Where not even the first can be submitted, no folder stays behind.
+    """
+    new = [path for path in (folder, *folder.parents) if not path.exists()]
+    folder.mkdir(parents=True, exist_ok=True)  # before a job begins to write there
     names: list[str] = []
-    for text in texts:
-        done = _slurm(["sbatch", "--parsable"], text)
-        if done.returncode:
-            but = done.stderr.strip().splitlines()[-1:] or ["it says nothing"]
-            raise ArgumentError("executor", "be able to submit jobs", f"sbatch refuses: {but[0]}")
-        names.append(done.stdout.strip().split(";")[0])
-        write_json(folder / JOBS, {"jobs": names})
+    try:
+        for text in texts:
+            names.append(_submit_one(text))
+            write_json(folder / JOBS, {"jobs": names})
+    finally:
+        if not names:
+            for path in new:
+                path.rmdir()
     return names
+
+
+def _submit_one(text: str) -> str:
+    done = _slurm(["sbatch", "--parsable"], text)
+    if done.returncode:
+        but = done.stderr.strip().splitlines()[-1:] or ["it says nothing"]
+        raise ArgumentError("executor", "be able to submit jobs", f"sbatch refuses: {but[0]}")
+    return done.stdout.strip().split(";")[0]
 
 
 def _states(names: Sequence[str]) -> dict[str, int] | None:
