@@ -268,8 +268,8 @@ def test_above_one_kelvin_they_are_differences():
     moved = [replace(wire, potential=wire.potential - s) for s in (-h, h)]
     down, up = (conductance(w, 0.2, 0.3, 0.02, 2.0).G_LL.item() for w in moved)
     assert found["dG_LL_dmu"].item() == pytest.approx((up - down) / (2 * h), rel=1e-2)
-    assert not gradients.has_closed_form(wire, 2.0)
-    assert gradients.has_closed_form(wire, 1.0)
+    assert not gradients.has_closed_form(wire, BIAS, 2.0)
+    assert gradients.has_closed_form(wire, BIAS, 1.0)
 
 
 def test_sets_without_a_model_have_differences(monkeypatch):

@@ -170,7 +170,7 @@ def _at_one_gap(
     complete: bool,
 ) -> Gradient:
     """Return the derivatives of a wire without a critical field."""
-    if has_closed_form(wire, temperature):
+    if has_closed_form(wire, bias, temperature):
         found = _of_the_core(wire, mu, B, bias, temperature)
         missing = [name for name in names if name not in found.by]
         if complete:
@@ -193,9 +193,10 @@ def _at_one_gap(
     return replace(found, by=by, gradient_error=worst)
 
 
-def has_closed_form(wire: Nanowire, temperature: float) -> bool:
+def has_closed_form(wire: Nanowire, bias: FloatArray, temperature: float) -> bool:
     """Return whether derivatives of a wire are in closed form."""
-    return 0 < temperature <= HOTTEST and wire.dissipation == wire.dissipation_of_parent
+    reaches = routes.closed_form_reaches([wire], bias, temperature, theta=0.0)
+    return reaches and 0 < temperature <= HOTTEST
 
 
 def _complete(

@@ -156,7 +156,7 @@ class Observation:
         """
         device = self.unknowns.devices(x[None], self.measurement)[0]
         wire, at = device.wire, device.as_set_up(self.measurement)
-        if at.theta != 0 or not gradients.has_closed_form(wire, at.temperature):
+        if at.theta != 0 or not gradients.has_closed_form(wire, at.bias, at.temperature):
             return None
         G, slopes, doubt = [], [], []
         for points in range(0, at.mu.size, POINTS_AT_ONCE):
