@@ -114,7 +114,7 @@ inline ContourPoint point_of_pole(const Pole& pole, const EndMatrix& own, const 
 }  // namespace detail
 
 // The points of one set, of a wire whose levels are broadened by so much, poles first, then as the path has them; with the Ḡ that the
-// model has.
+// model has where the path ends below the gap.
 inline std::vector<ContourPoint> contour(const Path& path, double hop, const Resonances& poles, const Leads& leads, double width,
                                          Batch& b) {
     const Amplitude broadening(0, width);
@@ -139,11 +139,14 @@ inline std::vector<ContourPoint> contour(const Path& path, double hop, const Res
         points.back().mirrored = seen[k] < poles.paired;
         points.back().isolation = detail::isolation(poles, poles.order[seen[k]]);
     });
-    for_green(int(path.above_axis.size()), leads.conjugate, [&](int k) { return path.above_axis[k].z - broadening; }, [&](int k, const EndMatrix& G) {
-        points.push_back({ContourPoint::ABOVE_AXIS, path.above_axis[k].z, path.above_axis[k].weight, true, G});
-    });
+    auto add = [&](ContourPoint::Kind kind, const Path::Point& of, const EndMatrix& G) { points.push_back({kind, of.z, of.weight, true, G}); };
+    if (path.reaches_gap())
+        for (const Path::Point& of : path.above_axis) add(ContourPoint::ABOVE_AXIS, of, {});
+    else
+        for_green(int(path.above_axis.size()), leads.conjugate, [&](int k) { return path.above_axis[k].z - broadening; },
+                  [&](int k, const EndMatrix& G) { add(ContourPoint::ABOVE_AXIS, path.above_axis[k], G); });
     for (const auto* some : {&path.next_to_gap, &path.above_gap})
-        for (const Path::Point& of : *some) points.push_back({ContourPoint::ON_AXIS, of.z, of.weight, true, {}});
+        for (const Path::Point& of : *some) add(ContourPoint::ON_AXIS, of, {});
     return points;
 }
 
