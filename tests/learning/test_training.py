@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from disorder_landscape.arguments import ArgumentError
-from disorder_landscape.learning import training
+from disorder_landscape.learning import checkpoints, training
 from disorder_landscape.learning.curves import read_curves
 from disorder_landscape.learning.examples import chosen, split
 from disorder_landscape.learning.model import load_model, read_model_file
@@ -210,3 +210,19 @@ def test_an_ensemble_predicts_the_mean_of_its_networks(tmp_path):
     np.testing.assert_allclose(both.predict_labels(X), (one + other) / 2, atol=1e-5)
     assert train(dataset, config, tmp_path / "both", progress=False) == scores
     assert [epoch.epoch for epoch in read_curves(tmp_path / "both" / "curves.csv")] == [1, 2]
+
+
+def test_what_takes_long_to_save_is_saved_less_often(tmp_path, monkeypatch):
+    clock, saved = [0.0], []
+
+    def save(folder, network, curves):
+        clock[0] += 3.0
+        saved.append(len(curves))
+
+    monkeypatch.setattr(checkpoints.time, "perf_counter", lambda: clock[0])
+    monkeypatch.setattr(checkpoints, "save_checkpoint", save)
+    kept = checkpoints.Checkpoints(tmp_path)
+    for epoch in range(1, 21):
+        clock[0] += 6.0
+        kept.save_if_due(None, [None] * epoch)
+    assert saved == [1, 6, 11, 16]  # a tenth of the time: 3 s of 30

@@ -1,4 +1,4 @@
-"""Training of the network as the paper did it (S-II.2), resumable after every epoch."""
+"""Training of the network as the paper did it (S-II.2), resumable."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ from disorder_landscape.estimates import Pace
 from disorder_landscape.files import write_json
 from disorder_landscape.learning.backend import import_keras
 from disorder_landscape.learning.checkpoints import (
+    Checkpoints,
     claim,
     drop_checkpoints,
     load_checkpoint,
-    save_checkpoint,
 )
 from disorder_landscape.learning.curves import Epoch, plot_curves, write_curves
 from disorder_landscape.learning.ensembles import combine, member_configs
@@ -54,7 +54,7 @@ def train(
     Adam on the mean squared error of standard-scaled Y, in sets of epochs, the learning rate
     divided by 10 from set to set, or along a cosine; `training.networks` of them, each in a folder
     of its own inside this one, if their mean is to predict. A training that was interrupted goes on
-    after its last finished epoch, with the numbers it would have had; one that is finished is left
+    after its last saved epoch, with the numbers it would have had; one that is finished is left
     alone. The validation data are the test realizations, as in the paper; nothing is chosen by
     them.
 
@@ -143,6 +143,7 @@ def _train_one(
     """Train a single network from where it stands to the end of its schedule."""
     model, curves = _start_or_resume(folder, config, examples)
     steps = Steps(model, examples, config.training)
+    checkpoints = Checkpoints(folder)
     per_epoch = len(examples) * config.training.passes
     left = sum(config.training.epochs) - len(curves)
     pace = Pace("train", left * per_epoch, tqdm.write if progress else lambda said: None)
@@ -161,7 +162,7 @@ def _train_one(
             curves.append(
                 Epoch(epoch, set_, learning_rate(config.training, epoch), loss, r2, seconds)
             )
-            save_checkpoint(folder, model.network, curves)
+            checkpoints.save_if_due(model.network, curves)
             write_curves(folder / "curves.csv", curves)
     return model, curves
 

@@ -89,7 +89,7 @@ class TrainingsPlan(TrainedPlan):
     """Trainings that are compared; a row each.
 
     Datasets and models are shared with all other studies, in build/datasets and build/models. An
-    interrupted training goes on after its last finished epoch.
+    interrupted training goes on after its last saved epoch.
     """
 
     kind: Literal["trainings"]
