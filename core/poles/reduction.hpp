@@ -89,21 +89,18 @@ private:
         int r = rank;
         width = padded(r);
         for (int k = 0; k < r; ++k) {
-            double *y = &Y[size_t(k) * width], *l = &L[size_t(k) * n];
+            double* y = &Y[size_t(k) * width];
             for (int j = 0; j < r; ++j) y[j] = j <= k ? K[size_t(k) * n + j] : TURNED * K[size_t(j) * n + k];
             for (int j = r; j < width; ++j) y[j] = 0.0;
-            subtract_rows(y, Y.data(), width, l, k, width);
-            subtract_rows(&rows[8 * k], rows.data(), 8, l, k, 8);
-            scale_row(y, 1.0 / l[k], width);
-            scale_row(&rows[8 * k], 1.0 / l[k], 8);
         }
+        substitute(L.data(), n, r, Y.data(), width, [&](int) { return width; });
+        substitute(L.data(), n, r, rows.data(), 8, [](int) { return 8; });
+        auto part = [&](int first) { return padded(r - first); };
         for (int k = 0; k < r; ++k) {
-            double *a = &A[size_t(k) * width], *l = &L[size_t(k) * n];
-            int part = padded(r - k);
-            for (int c = 0; c < part; ++c) a[c] = c < r ? TURNED * Y[size_t(r - 1 - c) * width + k] : 0.0;
-            subtract_rows(a, A.data(), width, l, k, part);
-            scale_row(a, 1.0 / l[k], part);
+            double* a = &A[size_t(k) * width];
+            for (int c = 0; c < part(k - k % TOGETHER); ++c) a[c] = c < r ? TURNED * Y[size_t(r - 1 - c) * width + k] : 0.0;
         }
+        substitute(L.data(), n, r, A.data(), width, part);
         for (int k = 0; k < r; ++k) {  // the other triangle
             for (int c = 0; c < r - 1 - k; ++c) A[size_t(r - 1 - c) * width + r - 1 - k] = TURNED * A[size_t(k) * width + c];
             if (SIGN == ANTISYMMETRIC) A[size_t(k) * width + r - 1 - k] = 0.0;
