@@ -34,8 +34,8 @@ from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.learning.scaling import LabelScaler
 from disorder_landscape.model.disorder import disorder_realization
 from disorder_landscape.observables import topological_overlap
-from disorder_landscape.studies.plan import study_names
 from disorder_landscape.studies.rows import as_text, write_rows
+from disorder_landscape.studies.study import study_names
 from disorder_landscape.studies.trainings_table import Result
 
 ALL = load_claims()

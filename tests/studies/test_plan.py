@@ -8,8 +8,8 @@ import pytest
 
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.chain import REPOSITORY
-from disorder_landscape.studies.plan import load_study, study_names
-from disorder_landscape.studies.study import Place
+from disorder_landscape.studies.plan import load_study
+from disorder_landscape.studies.study import Place, study_names
 from disorder_landscape.studies.trainings import PlannedRun
 
 PLAN = """
@@ -56,6 +56,41 @@ def test_what_goes_together_goes_through_together(plan):
     runs = [run.config.training for run in load_study(plan).tasks[:12]]
     assert [(run.realizations, run.passes) for run in runs] == [(10, 4)] * 6 + [(20, 2)] * 6
     assert [run.seed for run in runs] == ([0] * 3 + [1] * 3) * 2
+
+
+def test_a_plan_may_be_like_another(tmp_path):
+    path = tmp_path / "wider.toml"
+    path.write_text("""
+kind = "trainings"
+title = "wider"
+like = "learning_curves"
+[base.network]
+width_fraction = 0.5
+[[runs]]
+name = "5 components"
+set = { dataset = { B_points = 3 }, training = { realizations = 280 } }
+[[runs]]
+name = "any components"
+set = { dataset = { components = 2 } }
+""")
+    of_like = [run.config for run in load_study("learning_curves").tasks]
+    theirs = next(config.dataset for config in of_like if config.dataset.components == 5)
+    five, any_number = (run.config for run in load_study(path).tasks)
+    assert five.dataset == theirs.model_copy(update={"B_points": 3})
+    assert five.training.test_fraction == 0.130435
+    assert five.network.width_fraction == any_number.network.width_fraction == 0.5
+    assert any_number.dataset.components == 2
+    assert any_number.dataset.alpha_range == theirs.alpha_range
+
+
+@pytest.mark.parametrize(
+    ("like", "said"), [("elsewhere", "like is wrong: it must be one of"), ("inversions", "base")]
+)
+def test_a_plan_is_like_one_of_ours(tmp_path, like, said):
+    path = tmp_path / "wider.toml"
+    path.write_text(PLAN.replace("[base.dataset]", f'like = "{like}"\n[base.dataset]'))
+    with pytest.raises(ArgumentError, match=said):
+        load_study(path)
 
 
 def test_keys_tell_runs_apart_by_settings_and_not_by_name(plan):

@@ -52,9 +52,9 @@ def study(
 
     Example: landscape study learning_curves
     """
-    from disorder_landscape.studies.plan import load_study, study_names
+    from disorder_landscape.studies.plan import load_study
     from disorder_landscape.studies.runner import carry_out
-    from disorder_landscape.studies.study import Place
+    from disorder_landscape.studies.study import Place, study_names
 
     place = Place(output, build, executor_of(executor, workers, scheduler), parse_share(share))
     if listed:

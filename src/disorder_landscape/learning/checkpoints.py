@@ -43,8 +43,8 @@ SHORT = 1.0
 SHARE = 0.1
 """Of the time of a training, which longer saving may take.
 
-With all of the paper's filters a checkpoint has 660 MB. Saved after every epoch of 520 realizations,
-it made each last 3.3 s on an NVIDIA H200 that nine trainings shared; the steps took 0.6 s.
+With all of the paper's filters a checkpoint has 660 MB. Saved after every epoch, it made one of 520
+realizations last 3.3 s on an NVIDIA H200 that nine trainings shared; the steps took 0.6 s.
 """
 
 

@@ -12,7 +12,6 @@ from typing import Annotated, Any
 from pydantic import Field, RootModel
 
 from disorder_landscape.arguments import ArgumentError, require
-from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.config import checked
 from disorder_landscape.studies.accuracy import AccuracyPlan
 from disorder_landscape.studies.calibration import CalibrationPlan
@@ -26,14 +25,12 @@ from disorder_landscape.studies.odd_wires import OddWiresPlan
 from disorder_landscape.studies.rows import Row, read_rows
 from disorder_landscape.studies.smoothers import SmoothersPlan
 from disorder_landscape.studies.starts import StartsPlan
-from disorder_landscape.studies.study import Place, Plan
+from disorder_landscape.studies.study import PLANS, Place, Plan, study_names
 from disorder_landscape.studies.temperatures import TemperaturesPlan
 from disorder_landscape.studies.trainings import TrainingsPlan
 from disorder_landscape.studies.uniqueness import UniquenessPlan
 from disorder_landscape.studies.unmodelled import UnmodelledPlan
 from disorder_landscape.studies.verification import VerificationPlan
-
-PLANS = REPOSITORY / "configs" / "studies"
 
 AnyPlan = (
     AccuracyPlan
@@ -154,8 +151,3 @@ def load_study(name: str | Path) -> Study:
     said = ", ".join(map(str, key))
     require(times == 1, "study", "have different tasks", f"'{path}' has {said} twice")
     return study
-
-
-def study_names() -> list[str]:
-    """Return the names of the plans in configs/studies."""
-    return sorted(path.stem for path in PLANS.glob("*.toml"))

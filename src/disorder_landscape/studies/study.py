@@ -10,9 +10,17 @@ from typing import Any, ClassVar, Protocol, TypeVar
 
 from pydantic import BaseModel, ConfigDict
 
+from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.executors.executor import WHOLE, Executor, Share
 from disorder_landscape.executors.local import IN_THIS_PROCESS
 from disorder_landscape.studies.rows import Row
+
+PLANS = REPOSITORY / "configs" / "studies"
+
+
+def study_names() -> list[str]:
+    """Return the names of the plans in configs/studies."""
+    return sorted(path.stem for path in PLANS.glob("*.toml"))
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from copy import deepcopy
 from dataclasses import asdict, dataclass
 from itertools import product
@@ -12,20 +12,23 @@ from multiprocessing import parent_process
 from pathlib import Path
 from typing import Any, ClassVar, Literal
 
-from pydantic import Field, model_validator
+from pydantic import BaseModel, Field, field_validator, model_validator
 
 from disorder_landscape.chain import Run, dataset_folder, generate
 from disorder_landscape.config import Config, checked
-from disorder_landscape.studies.study import Part, Place, Plan
+from disorder_landscape.studies.study import PLANS, Part, Place, Plan, one_of, study_names
 from disorder_landscape.studies.trainings_table import Result
+
+Sections = dict[str, dict[str, Any]]
+"""Sections and keys of a configuration."""
 
 
 class Runs(Part):
     """Trainings that have a name and some settings in common."""
 
     name: str
-    set: dict[str, dict[str, Any]] = Field(default_factory=dict)
-    """Sections and keys of a configuration, instead of the base's."""
+    set: Sections = Field(default_factory=dict)
+    """Instead of the base's."""
     together: dict[str, list[Any]] = Field(default_factory=dict)
     """Lists of values for "section.key", as long as each other, which go through together."""
     grid: dict[str, list[Any]] = Field(default_factory=dict)
@@ -65,14 +68,29 @@ class PlannedRun:
         return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:12]
 
 
+class _Likeness(BaseModel):
+    """What one plan may take from another."""
+
+    base: Sections
+    runs: tuple[Runs, ...]
+
+
 class TrainedPlan(Plan):
     """A study of networks that it trains, or finds trained."""
 
-    base: dict[str, dict[str, Any]]
+    base: Sections = Field(default_factory=dict)
     """A configuration, from which each training differs."""
     runs: tuple[Runs, ...]
+    like: str | None = None
+    """A study in configs/studies: what its base, and `set` of its runs of the same names, say holds
+    here too, where this plan says nothing else."""
 
     tasks_resume: ClassVar = True
+
+    @field_validator("like")
+    @classmethod
+    def _there(cls, name: str | None) -> str | None:
+        return name if name is None else one_of(study_names(), name)
 
     def trainings(self) -> list[PlannedRun]:
         """Return the trainings, in the order of the file.
@@ -82,7 +100,15 @@ class TrainedPlan(Plan):
         ArgumentError
             If one of them has an unknown or invalid key.
         """
-        return [run for group in self.runs for run in _expand(group, self.base, self.title)]
+        base, sets = self.base, dict[str, Sections]()
+        if self.like is not None:
+            other = checked(_Likeness, PLANS / f"{self.like}.toml", "study")
+            base, sets = _over(other.base, base), {run.name: run.set for run in other.runs}
+        return [
+            run
+            for group in self.runs
+            for run in _expand(group, _over(base, sets.get(group.name, {})), self.title)
+        ]
 
 
 class TrainingsPlan(TrainedPlan):
@@ -170,14 +196,17 @@ def _result(run: PlannedRun, folder: Path) -> Result:
     )
 
 
-def _expand(group: Runs, base: Mapping[str, Any], title: str) -> Iterator[PlannedRun]:
+def _over(first: Sections, then: Sections) -> Sections:
+    """Return the sections of both, with what is said last."""
+    return {name: {**first.get(name, {}), **then.get(name, {})} for name in {**first, **then}}
+
+
+def _expand(group: Runs, base: Sections, title: str) -> Iterator[PlannedRun]:
     """Yield a training for every combination of the group's grid and what goes together."""
     names = [*group.together, *group.grid]
     together = list(zip(*group.together.values(), strict=True)) or [()]
     for first, *others in product(together, *group.grid.values()):
-        content = deepcopy(dict(base))
-        for section, settings in group.set.items():
-            content.setdefault(section, {}).update(settings)
+        content = deepcopy(_over(base, group.set))
         for name, value in zip(names, (*first, *others), strict=True):
             section, _, key = name.partition(".")
             content.setdefault(section, {})[key] = value
