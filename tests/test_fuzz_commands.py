@@ -887,6 +887,10 @@ FOUND = {
         ("infer", "wire.nc", "--model=model", "--output=new.nc", "--samples=4"),
         {"wire.nc": MEASURED.assign(G_LL=MEASURED["G_LL"].isel(mu=0, drop=True))},
     ),
+    "advice on the network, and no mu": (
+        ("infer", "wire.nc", "--model=model", "--output=new.nc", "--samples=4", "--noise=0.01"),
+        {"wire.nc": MEASURED.drop_vars("mu")},
+    ),
     "bias beyond the gap of a measurement": (
         ("infer", "wire.nc", "--model=model", "--from-prior", "--output=deep/new.nc"),
         {"wire.nc": LARGER.assign_coords(bias=[-0.5, 0.0, 0.5])},

@@ -141,11 +141,12 @@ def _infer_alone(settings: Settings, task: Task) -> None:
         check_writable("plot", plot)
     measured = read_dataset(task.measurement)
     errors = stated_noise(measured.attrs) if settings.noise is None else settings.noise
+    observation = observation_of(measured, prior_of(settings), errors)
     if settings.model is not None and not settings.from_prior:
         training = load_model_config(existing_folder(settings.model)).training
         if hint := noise_hint(training, errors):
-            print(hint, file=sys.stderr)
-    announce_inference(observation_of(measured, prior_of(settings), errors))
+            print(hint)
+    announce_inference(observation)
     with resumable(), inference_progress() as progress:
         result = infer_file(settings, task, progress)
     print("\n".join(summary(result)))
