@@ -44,9 +44,9 @@ public:
     double end;                                        // poles of Re z beyond it do not count
     std::vector<Point> above_axis, next_to_gap, above_gap;  // Re z ≥ 0; −z̄ counts, too
 
-    // Of a window, in meV, that ends below the gap.
-    Path(double window, double kT) : Path(kT) {
-        end = window + FURTHER * kT;
+    // Of a window, in meV, that ends below the gap; so does the line.
+    Path(double window, double kT, double delta0) : Path(kT) {
+        end = std::min(window + FURTHER * kT, BELOW_GAP * delta0);
         for (int j = 0; j < int(std::ceil(end / step)); ++j) above_axis.push_back({{(j + 0.5) * step, height}, step});
     }
     // Of one that does not; levels are told apart up to the given τ.

@@ -32,7 +32,7 @@ struct GradientRules {
 
 private:
     static Path path_of(const EnergyPlan& plan, double window, const Wire& wire) {
-        if (!plan.reaches_gap()) return Path(window, plan.kT);
+        if (!plan.reaches_gap()) return Path(window, plan.kT, wire.delta0);
         return Path(window, plan.kT, wire.delta0, std::max(resolved_up_to(wire, plan.nodes), LEAST_RESOLVED) - BEFORE);
     }
 };
