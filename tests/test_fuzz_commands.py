@@ -887,6 +887,11 @@ FOUND = {
         ("infer", "wire.nc", "--model=model", "--output=new.nc", "--samples=4"),
         {"wire.nc": MEASURED.assign(G_LL=MEASURED["G_LL"].isel(mu=0, drop=True))},
     ),
+    "an output whose name leaves no room": (
+        ("infer", "wire.nc", "--model=model", "--output=" + "a" * 230 + ".nc", "--plot=new.png"),
+        {"wire.nc": MEASURED},
+    ),
+    "a plot whose name leaves no room": ((*SIMULATE, "--plot=" + "a" * 240 + ".png"), {}),
     "advice on the network, and no mu": (
         ("infer", "wire.nc", "--model=model", "--output=new.nc", "--samples=4", "--noise=0.01"),
         {"wire.nc": MEASURED.drop_vars("mu")},

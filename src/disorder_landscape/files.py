@@ -35,8 +35,7 @@ def replacing(path: Path) -> Iterator[Path]:
     ArgumentError
         If the folder cannot be written, or the disk is full; nothing is left behind then.
     """
-    # A name of this process' own, whoever else writes the same; Keras looks at the suffix.
-    temporary = path.with_name(f".writing-{_HOST}-{os.getpid()}-{path.name}")
+    temporary = path.with_name(_temporary_name(path))
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         _remove_left_behind(path)
@@ -48,6 +47,11 @@ def replacing(path: Path) -> Iterator[Path]:
     finally:
         with suppress(OSError):
             _remove(temporary)
+
+
+def _temporary_name(path: Path) -> str:
+    """Return a name of this process' own, whoever else writes the same."""
+    return f".writing-{_HOST}-{os.getpid()}-{path.name}"  # Keras looks at the suffix
 
 
 def write_picture(path: Path, figure: Figure, **options: Any) -> None:
@@ -100,6 +104,8 @@ def check_writable(name: str, path: Path) -> None:
     must = "be a file in a folder that can be written"
     try:
         folder = next((one for one in path.absolute().parents if one.exists()), path)
+        with suppress(FileNotFoundError, NotADirectoryError):
+            os.lstat(folder / _temporary_name(path))
         usable = folder.is_dir() and os.access(folder, os.W_OK) and not path.is_dir()
     except OSError as error:  # of a name that is too long
         raise ArgumentError(name, must, f"it is {shown(str(path))} ({error.strerror})") from None

@@ -134,6 +134,7 @@ def _infer_alone(settings: Settings, task: Task) -> None:
 
     output, plot = task.output, task.plot
     check_netcdf("output", output)
+    check_writable("output", task.unfinished)
     same = output.resolve() == task.measurement.resolve()
     require(not same, "output", "be another file than the measurement", f"both are '{output}'")
     if plot is not None:

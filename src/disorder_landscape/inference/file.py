@@ -14,6 +14,7 @@ import xarray as xr
 from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.dataset.hdf5 import open_hdf5
 from disorder_landscape.dataset.store import read_dataset, write_dataset
+from disorder_landscape.files import check_writable
 from disorder_landscape.inference.infer import PAPERS_SETTINGS, infer
 from disorder_landscape.inference.plot import plot_inference
 from disorder_landscape.inference.problem.measurement import measurement_of
@@ -106,6 +107,7 @@ def tasks_of_folder(
         same = task.output.resolve() == path.resolve()
         must = "be another folder than that of the measurements"
         require(not same, "output", must, f"both have '{path.name}'")
+        check_writable("output", task.unfinished)
         if task.output.exists():
             stored = _asked_of(task.output)
             must = "be a folder for results of these measurements with these options"
