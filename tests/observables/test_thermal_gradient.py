@@ -403,4 +403,4 @@ def test_ten_thousand_random_derivatives(cases, broadened, hot):
     else:
         assert (shares < 1e-4).mean() > 0.99
         assert (shares < 1e-2).mean() > 0.995
-        assert unforeseen == 0
+        assert unforeseen < 0.001
