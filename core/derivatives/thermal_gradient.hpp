@@ -56,10 +56,12 @@ inline double gradient_of_set(const detail::GradientField& field, const Gradient
         if (absorbed) PointsOfSet<WITH_RETURNS>(field, plan, mu, some, count, rules.averages.weight, room).add();
         else PointsOfSet<PROBABILITIES>(field, plan, mu, some, count, rules.averages.weight, room).add();
     };
+    in_lanes(0, std::count_if(points.begin(), points.end(), is_at_pole),
+             [&](size_t first, int count) { find_exact_poles(field, path, mu, &points[first], count, room); });
+    leave_out_twins(points);
+    std::erase_if(points, [](const ContourPoint& one) { return one.weight == 0.0; });
     const size_t poles = std::count_if(points.begin(), points.end(), is_at_pole);
     const size_t on_axis = poles + path.above_axis.size(), above_gap = on_axis + path.next_to_gap.size();
-    in_lanes(0, poles, [&](size_t first, int count) { find_exact_poles(field, path, mu, &points[first], count, room); });
-    leave_out_twins(points);
     if (path.reaches_gap())
         in_lanes(poles, on_axis, [&](size_t first, int count) { find_conjugates(field, mu, &points[first], count); });
     in_lanes(0, poles, add);

@@ -356,6 +356,12 @@ def test_the_thermal_window_may_end_next_to_the_gap(seed, share_of_gap):
     assert_right(wire, mu, B, kT / BOLTZMANN, ["mu", "gamma"], share=2e-3)
 
 
+def test_a_pole_may_be_far_wider_than_the_model_has_it():
+    """At zero energy, between wider ones: left out for its width, it was missed."""
+    wire, mu, B, T, _ = drawn_case(322)
+    assert_right(wire, mu, B, T, ["mu", "gamma", "V"], share=1e-3)
+
+
 def one_case(seed, broadened=False, hot=False):
     """Return errors of two derivatives, estimates, and whether the differences are better.
 
