@@ -19,6 +19,7 @@ from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.inference.invert import InversionSettings
 from disorder_landscape.inference.optimum import optimum_at
 from disorder_landscape.inference.outcome import Outcome
+from disorder_landscape.inference.problem.parameters import PARAMETERS
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.learning.scaling import LabelScaler
 from disorder_landscape.model.parameters import BARRIER_RANGE, PARAMETER_RANGES
@@ -199,10 +200,13 @@ def test_conductance_gradient_answers_or_refuses(count):
         "bias": st.one_of(grid(-0.06, 0.06, 3), grid(-0.12, 0.12)),
         "growth_limit": number(1.0, 1e12, 2),
         "temperature": st.one_of(*[st.just(0.0)] * 3, number(0.02, 0.06, 2)),
-        "parameters": st.one_of(
-            st.none(), st.lists(st.sampled_from(["mu", "g", "V", "no"]), max_size=3)
+        "parameters": st.one_of(st.none(), names(["mu", "g", "V", "no"])),
+        "direction": st.one_of(
+            st.none(),
+            st.dictionaries(st.sampled_from(["mu", "alpha", "V", "no", 3]), number(-1.0, 1.0)),
+            odd_scalars(),
         ),
-        "direction": st.one_of(st.none(), st.just({"mu": 1.0}), st.just({"mu": "much"})),
+        "weights": st.one_of(st.none(), odd_scalars()),
     }
     usual = {"mu": 0.1, "B": [0.0, 0.4], "bias": [-0.02, 0.03], "temperature": 0.0}
     arguments = of_wire(
@@ -217,6 +221,90 @@ def test_conductance_gradient_answers_or_refuses(count):
                 require_numbers(values, (*AXES, "site") if str(name).endswith("_dV") else dims)
 
     tried(count, arguments, check)
+
+
+def names(some):
+    """Draw several names, one, or something else."""
+    several = st.lists(st.sampled_from(some), max_size=3)
+    forms = st.sampled_from([list, tuple, iter, np.array])
+    usual = st.one_of(st.builds(lambda of, to: to(of), several, forms), st.sampled_from(some))
+    return st.one_of(*[usual] * 6, odd_scalars())
+
+
+TENSORS = [[0.1, 0.2], [[0.1, 0.2, 0.3]], np.ones((2, 3), "f4"), np.zeros((2, 0)), ["a"], [[1]]]
+TENSORS += [np.full((1, 3), np.nan), np.full(2, np.inf), np.ones((1, 3), "f2"), [8 + 1j], [True]]
+TENSORS += [np.array([8.0, 9.0]), np.array([-1.0]), np.array([25.0]), [0.1] * 3, [[[0.1]]], [1e300]]
+
+
+@argument_sets(60)
+def test_differentiable_conductance_answers_or_refuses(count):
+    odd = {
+        "mu": grid(-1.0, 30.0),
+        "B": grid(-2.0, 5.0),
+        "bias": st.one_of(grid(-0.06, 0.06, 3), grid(-0.12, 0.12)),
+        "temperature": number(0.02, 0.06, 2),
+        "parameters": names(["V", "alpha", "g", "gamma", "delta0", "critical_field", "mu"]),
+    }
+    usual = {"mu": 0.1, "B": 0.4, "bias": [-0.02, 0.03], "temperature": 0.05}
+    of_three_sites = st.just(Nanowire(np.array([0.1, -0.2, 0.3])))
+    drawn = of_wire(st.one_of(*[of_three_sites] * 9, wires()), usual, odd)
+    each = st.one_of(*[st.sampled_from(TENSORS)] * 6, odd_scalars())
+    values = st.one_of(
+        *[st.sampled_from(TENSORS).map(lambda of: [of])] * 3, st.lists(each, max_size=3)
+    )
+
+    def check(arguments):
+        some, given = arguments
+        operation = answer(lambda: dl.differentiable_conductance(**some))
+        if operation is not None:
+            G = answer(lambda: operation(*given))
+            if G is not None:
+                assert G.shape[-1] == len(CONDUCTANCES)
+                assert np.isfinite(G.numpy()).all()
+
+    tried(count, st.tuples(drawn, values), check)
+
+
+@argument_sets(300)
+def test_a_prior_is_made_or_refused(count):
+    beliefs = {
+        one.name: st.one_of(
+            number(one.low, one.high),
+            st.tuples(number(one.low, one.high), number(one.low, one.high)),
+            st.tuples(number(one.low, one.high), number(0.0, 1.0)).map(lambda of: ("normal", *of)),
+            st.just({"mean": one.usual, "std": 0.01}),
+            st.none(),
+        )
+        for one in PARAMETERS
+    }
+    odd = beliefs | {
+        "components": st.one_of(st.none(), st.integers(1, 9), odd_scalars()),
+        "sites": st.one_of(st.integers(2, 40), odd_scalars()),
+        "correlation_length": number(1e-3, 100.0),
+        "amplitude": number(1e-6, 1e3),
+        "mean_std": number(1e-9, 1e3),
+        "mass": number(0.001, 1.0),
+        "lattice": number(1.0, 100.0),
+        "lead_mu": number(0.5, 60.0),
+    }
+
+    def made(arguments):
+        normal = {
+            name: dl.Normal(*of[1:])
+            for name, of in arguments.items()
+            if isinstance(of, tuple) and len(of) == 3
+        }
+        return dl.Prior(**(arguments | normal))
+
+    def check(arguments):
+        prior = answer(lambda: made(arguments))
+        if prior is not None:
+            assert dl.Prior.from_mapping(prior.to_dict()) == prior
+            assert np.isfinite([*prior.known.values()]).all() or "critical_field" in prior.known
+            for of in prior.unknown.values():
+                assert np.isfinite([of.mean, of.std, *of.range]).all()
+
+    tried(count, some_changed({"components": 3, "sites": 20}, odd), check)
 
 
 @argument_sets(150)

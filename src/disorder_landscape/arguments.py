@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from contextlib import suppress
 
 import numpy as np
@@ -126,6 +126,24 @@ def grid_in(
         within = f"lie between {low:.6g} and {high:.6g} {unit}"
         require(low <= value <= high, name, within, f"it reaches {value:.6g}")
     return grid
+
+
+def names_in(name: str, given: object, known: Collection[str], must: str) -> list[str]:
+    """Return one name, or several, as a list.
+
+    Raises
+    ------
+    ArgumentError
+        If there is none, or one that is not known.
+    """
+    try:
+        asked = [given] if isinstance(given, str) else list(given)  # type: ignore[call-overload]
+    except (TypeError, ValueError):  # what has no elements
+        asked = [given]
+    require(bool(asked), name, must, "there is none")
+    for one in asked:
+        require(isinstance(one, str) and one in known, name, must, f"one is {shown(one)}")
+    return asked
 
 
 def whether(name: str, value: object) -> bool:

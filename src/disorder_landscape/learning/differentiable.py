@@ -11,11 +11,16 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from disorder_landscape.arguments import require, shown
-from disorder_landscape.model.parameters import TEMPERATURE, FloatArray, Nanowire
+from disorder_landscape.arguments import ArgumentError, names_in, require, shown
+from disorder_landscape.model.parameters import (
+    TEMPERATURE,
+    FloatArray,
+    Nanowire,
+    checked_temperature,
+)
 from disorder_landscape.model.quantities import AXES, CONDUCTANCES
 from disorder_landscape.observables.conductance import conductance
-from disorder_landscape.observables.gradient import conductance_gradient
+from disorder_landscape.observables.gradient import checked_grids, conductance_gradient
 
 Tensor = Any
 """Of TensorFlow, which has no types."""
@@ -38,7 +43,7 @@ def differentiable_conductance(
     wire : Nanowire
         Has what is not given by tensors.
     mu, B, bias : float or array
-        Chemical potentials in meV, fields in T, biases in meV; increasing.
+        Chemical potentials in meV, fields in T, biases in meV below the gap; increasing.
     temperature : float
         In K, above zero.
     parameters : sequence of str
@@ -54,16 +59,19 @@ def differentiable_conductance(
     Raises
     ------
     ArgumentError
-        If a parameter is unknown; when called, what `conductance` raises.
+        If an argument is none of these; when called, if a tensor is, or what it says of a wire.
+        (In a graph, where values are not known yet, TensorFlow raises an error of its own.)
     """
-    tf = import_module("tensorflow")  # it takes seconds
-
-    names = [parameters] if isinstance(parameters, str) else list(parameters)
-    for name in names:
-        must = f"be some of {', '.join(OF_THE_WIRE)}"
-        require(name in OF_THE_WIRE, "parameters", must, f"one is {shown(name)}")
+    require(isinstance(wire, Nanowire), "wire", "be a Nanowire", f"it is {shown(wire)}")
+    temperature = checked_temperature(temperature)
     require(temperature > 0, "temperature", "be above zero for slopes of averages", "it is zero")
-    point = mu, B, bias, temperature
+    must = f"be some of {', '.join(OF_THE_WIRE)}, each once"
+    names = names_in("parameters", parameters, OF_THE_WIRE, must)
+    require(len(set(names)) == len(names), "parameters", must, "one is there twice")
+    grids = checked_grids(wire, mu, B, bias)
+    axes = grids["mu"], grids["B"], grids["bias"]
+    point = *axes, temperature
+    tf = import_module("tensorflow")  # it takes seconds
 
     def changed(values: Sequence[FloatArray]) -> Nanowire:
         named = zip(names, values, strict=True)
@@ -88,8 +96,8 @@ def differentiable_conductance(
     @tf.custom_gradient  # type: ignore[untyped-decorator]
     def operation(*tensors: Tensor) -> tuple[Tensor, Callable[[Tensor], Any]]:
         G = tf.py_function(of_arrays(forward), tensors, tf.float64)
-        grids = [np.atleast_1d(np.asarray(axis)).size for axis in (mu, B, bias)]
-        G = tf.ensure_shape(G, (tensors[0].shape[0], *grids, len(CONDUCTANCES)))
+        sizes = [axis.size for axis in axes]
+        G = tf.ensure_shape(G, (tensors[0].shape[0], *sizes, len(CONDUCTANCES)))
 
         def slopes(upstream: Tensor) -> list[Tensor]:
             kinds = [tf.float64] * len(names)
@@ -100,8 +108,35 @@ def differentiable_conductance(
 
         return G, slopes
 
-    def of_tensors(*tensors: Tensor) -> Tensor:
-        kind = tf.convert_to_tensor(tensors[0]).dtype
-        return tf.cast(operation(*(tf.cast(t, tf.float64) for t in tensors)), kind)
+    def check(tensors: Sequence[Tensor]) -> None:
+        """Require the right shapes and, where there are values, wires that there can be."""
+        for name, tensor in zip(names, tensors, strict=True):
+            shape = [tensors[0].shape[0], wire.sites][: 2 if name == "V" else 1]
+            must = f"have the shape {'(batch, site)' if name == 'V' else '(batch,)'}"
+            fits = tensor.shape.is_compatible_with(shape) and shape[0] != 0
+            require(fits, name, must, f"it is {tuple(tensor.shape)}")
+        if tf.executing_eagerly():
+            for values in zip(*(tensor.numpy() for tensor in tensors), strict=True):
+                checked_grids(changed(values), *axes)
+
+    def of_tensors(*given: Tensor) -> Tensor:
+        one_each = f"be one for each of {', '.join(names)}"
+        require(len(given) == len(names), "tensors", one_each, f"there are {len(given)}")
+        tensors = [_tensor(tf, name, value) for name, value in zip(names, given, strict=True)]
+        doubles = [tf.cast(tensor, tf.float64) for tensor in tensors]
+        check(doubles)
+        return tf.cast(operation(*doubles), tensors[0].dtype)
 
     return of_tensors
+
+
+def _tensor(tf: Any, name: str, value: object) -> Tensor:
+    """Return a tensor of real numbers."""
+    must = "be a tensor of real numbers"
+    try:
+        tensor = tf.convert_to_tensor(value)
+    except Exception as error:  # of any kind: TensorFlow's own, and those of what it asks
+        raise ArgumentError(name, must, f"it is {shown(value)}") from error
+    require(tensor.dtype.is_floating, name, must, f"its numbers are {tensor.dtype.name}")
+    require(tensor.shape.rank != 0, name, "have a batch of wires", "it is one number")
+    return tensor

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from disorder_landscape.arguments import (
     check_progress,
     grid_in,
+    names_in,
     number_in,
     reals,
     require,
@@ -96,13 +97,12 @@ def conductance_gradient(
         require(wire.lossless, "wire", "have no dissipation for slopes at T = 0", "it has")
         without = bool(np.isinf(wire.critical_field))
         require(without, "wire", "have no critical field for slopes at T = 0", "it has")
-    fields = grid_in("B", B, -100.0, 100.0, "T")
-    edge = wire.in_field(abs(fields).max()).delta0 * (1 - 1e-6)
-    grids = {
-        "mu": grid_in("mu", mu, -1e3, 1e3, "meV"),
-        "B": fields,
-        "bias": grid_in("bias", bias, -edge, edge, "meV"),
-    }
+    grids = checked_grids(wire, mu, B, bias)
+    fields = grids["B"]
+    maps = direction is None or isinstance(direction, Mapping)
+    require(
+        maps, "direction", "say by how much each parameter changes", f"it is {shown(direction)}"
+    )
     names = _known(parameters if direction is None else direction, temperature)
     alone = direction is None or (weights is None and parameters is None)
     require(alone, "direction", "come without parameters or weights", "it does not")
@@ -132,10 +132,29 @@ def conductance_gradient(
     return with_units(xr.Dataset(data, coords=coordinates, attrs={"temperature": temperature}))
 
 
+def checked_grids(
+    wire: Nanowire, mu: ArrayLike, B: ArrayLike, bias: ArrayLike
+) -> dict[str, FloatArray]:
+    """Return where there are derivatives, which is at biases below the gap.
+
+    Raises
+    ------
+    ArgumentError
+        If a grid is empty, unsorted or out of range.
+    """
+    fields = grid_in("B", B, -100.0, 100.0, "T")
+    edge = wire.in_field(abs(fields).max()).delta0 * (1 - 1e-6)
+    return {
+        "mu": grid_in("mu", mu, -1e3, 1e3, "meV"),
+        "B": fields,
+        "bias": grid_in("bias", bias, -edge, edge, "meV"),
+    }
+
+
 Variable = tuple[tuple[str, ...], Any, dict[str, str]]
 
 
-def _known(names: Iterable[str] | None, temperature: float) -> list[str]:
+def _known(names: object, temperature: float) -> list[str]:
     """Return what is differentiated by, in the order of the registry."""
     at_hand = gradients.AT_ZERO if temperature == 0 else gradients.AT_A_TEMPERATURE
     if names is None:
@@ -143,12 +162,7 @@ def _known(names: Iterable[str] | None, temperature: float) -> list[str]:
     known = at_hand if temperature == 0 else gradients.UNITS
     at = "at T = 0 " if temperature == 0 else ""
     must = f"be names of what there are derivatives by, {at}{', '.join(known)}"
-    asked = [names] if isinstance(names, str) else list(names)
-    require(bool(asked), "parameters", must, "there is none")
-    for name in asked:
-        require(
-            isinstance(name, str) and name in known, "parameters", must, f"one is {shown(name)}"
-        )
+    asked = names_in("parameters", names, known, must)
     return [name for name in known if name in asked]
 
 

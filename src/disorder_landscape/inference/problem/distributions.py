@@ -15,6 +15,8 @@ from scipy.special import ndtr, ndtri
 from disorder_landscape.arguments import ArgumentError, number_in, reals, require, shown
 from disorder_landscape.model.parameters import FloatArray
 
+LARGEST = 1e9
+"""Mean or standard deviation that may be stated: more than any parameter may be."""
 FARTHEST = 5.0
 """Values are taken for no more than so many standard deviations off, which is one in 2 million."""
 
@@ -58,10 +60,20 @@ class Uniform:
 
 @dataclass(frozen=True)
 class Normal:
-    """A normal distribution, cut where it is next to nothing."""
+    """A normal distribution, cut where it is next to nothing.
+
+    Raises
+    ------
+    ArgumentError
+        If mean or standard deviation are no numbers, or too large.
+    """
 
     mean: float
     std: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "mean", number_in("mean", self.mean, -LARGEST, LARGEST))
+        object.__setattr__(self, "std", number_in("std", self.std, 0.0, LARGEST))
 
     @property
     def range(self) -> tuple[float, float]:
@@ -101,8 +113,11 @@ def belief_of(name: str, given: object, low: float, high: float, unit: str) -> B
     must = "be a number, a pair (low, high), or a normal distribution (mean and std)"
     if isinstance(given, Mapping):
         require(set(given) == {"mean", "std"}, name, must, f"it is {shown(dict(given))}")
-        parts = [number_in(f"{name}.{part}", given[part], -1e9, 1e9) for part in ("mean", "std")]
-        given = Normal(*parts)
+        numbers = {
+            part: number_in(f"{name}.{part}", given[part], low, LARGEST)
+            for part, low in (("mean", -LARGEST), ("std", 0.0))
+        }
+        given = Normal(**numbers)
     if isinstance(given, tuple | list):
         pair = reals(name, given, must)
         require(pair.shape == (2,), name, must, f"it is {shown(given)}")
