@@ -50,12 +50,20 @@ def reals(name: str, values: ArrayLike, must: str) -> NDArray[np.float64]:
     ArgumentError
         If there is anything else: complex numbers, truth values, dates, masked numbers.
     """
+    require(not _is_masked(values), name, must, "it holds a masked number")
     with suppress(TypeError, ValueError, OverflowError), np.errstate(over="ignore"):
         given = np.asarray(values)
         is_complex = given.dtype == object and any(np.iscomplexobj(one) for one in given.flat)
-        if given.dtype.kind in "fiuOUS" and not is_complex and not np.ma.is_masked(values):
+        if given.dtype.kind in "fiuOUS" and not is_complex:
             return np.array(given, dtype=np.float64, order="C")
     raise ArgumentError(name, must, "it holds something else")
+
+
+def _is_masked(values: object) -> bool:
+    """Return whether a number is masked, of those in a list of lists too."""
+    if isinstance(values, list | tuple):
+        return any(map(_is_masked, values))
+    return isinstance(values, np.ma.MaskedArray) and bool(np.ma.is_masked(values))
 
 
 def number_in(name: str, value: object, low: float, high: float, unit: str = "") -> float:
