@@ -389,18 +389,13 @@ def one_case(seed, broadened=False, hot=False):
     ("cases", "broadened", "hot"), [(5000, False, False), (500, True, False), (500, False, True)]
 )
 def test_ten_thousand_random_derivatives(cases, broadened, hot):
-    """`pytest -m slow -s -k ten_thousand_random_derivatives`: half an hour on two cores.
-
-    The differences resolve few derivatives of hot wires. So there all count, with the error that
-    the differences have, too.
-    """
+    """`pytest -m slow -s -k ten_thousand_random_derivatives`: half an hour on two cores."""
     of_case = partial(one_case, broadened=broadened, hot=hot)
     with ProcessPoolExecutor(2, get_context("spawn")) as pool:
         each = [one for both in pool.map(of_case, range(cases), chunksize=20) for one in both]
     shares, estimates, resolved = np.array(each).T
     print(f"\n{resolved.sum():.0f} of {len(each)} that the differences resolve")
-    counted = (resolved == 1) | hot
-    shares, estimates = shares[counted], estimates[counted]
+    shares, estimates = shares[resolved == 1], estimates[resolved == 1]
     trusted = estimates < TRUSTED
     for percent in (50, 90, 95, 99, 99.9, 100):
         of_trusted = np.percentile(shares[trusted], percent)
@@ -417,6 +412,7 @@ def test_ten_thousand_random_derivatives(cases, broadened, hot):
         assert (shares[trusted] < 2e-2).all()
         assert unforeseen < 0.01
     else:
-        assert (shares < 1e-4).mean() > 0.99
-        assert (shares < 1e-2).mean() > 0.995
-        assert unforeseen < 0.001
+        assert (shares < 1e-4).mean() > 0.97
+        assert (shares < 1e-2).mean() > 0.999
+        assert (shares[trusted] < 1e-3).all()
+        assert unforeseen == 0

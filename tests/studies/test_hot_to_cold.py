@@ -13,6 +13,7 @@ from disorder_landscape.studies.fresh_wires import Inverted, measured_wire
 from disorder_landscape.studies.hot_to_cold import (
     TARGETS,
     HotToColdPlan,
+    HotWires,
     Task,
     cold_wires,
     compared,
@@ -23,9 +24,7 @@ PLAN = HotToColdPlan(
     kind="hot_to_cold",
     title="some",
     cold=0.02,
-    hot=(0.1,),
-    noise=(0.01,),
-    count=2,
+    hot=(HotWires(temperatures=(0.1,), noise=(0.01,), count=2),),
     points=2,
     samples=32,
 )

@@ -22,7 +22,7 @@ from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.observables.visibility import topological_visibility
 from disorder_landscape.studies.fresh_wires import Noise, inverted, measured_wire, more_probable
 from disorder_landscape.studies.rows import Row, rounded
-from disorder_landscape.studies.study import Derived, Place, Plan
+from disorder_landscape.studies.study import Derived, Part, Place, Plan
 from disorder_landscape.studies.temperatures import Temperature
 
 TARGETS = ("local", "nonlocal", "visibility")
@@ -40,15 +40,21 @@ class Task:
     index: int
 
 
-class HotToColdPlan(Plan):
-    """Hot temperatures, and the cold one at which wires are predicted."""
+class HotWires(Part):
+    """So many wires, measured at each temperature with each noise."""
 
-    kind: Literal["hot_to_cold"]
-    cold: Temperature
-    hot: tuple[Temperature, ...]
+    temperatures: tuple[Temperature, ...]
     noise: tuple[Annotated[Noise, Field(gt=0)], ...]
     """In e²/h."""
     count: Positive
+
+
+class HotToColdPlan(Plan):
+    """Hot wires, and the temperature at which they are predicted."""
+
+    kind: Literal["hot_to_cold"]
+    cold: Temperature
+    hot: tuple[HotWires, ...]
     points: Positive = 15
     """Of μ, and of B."""
     samples: Positive = 64
@@ -60,15 +66,16 @@ class HotToColdPlan(Plan):
         """Return the tasks, by temperature, noise and index."""
         return sorted(
             Task(temperature, noise, index)
-            for temperature in self.hot
-            for noise in self.noise
-            for index in range(self.count)
+            for group in self.hot
+            for temperature in group.temperatures
+            for noise in group.noise
+            for index in range(group.count)
         )
 
     def config(self, temperature: float) -> DatasetConfig:
         """Return the wires and their grid."""
         return DatasetConfig(
-            realizations=self.count,
+            realizations=max(group.count for group in self.hot),
             mu_points=self.points,
             B_points=self.points,
             temperature=temperature,
