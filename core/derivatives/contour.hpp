@@ -27,8 +27,9 @@
 
 namespace core {
 
-// In meV; poles that the leads make no wider change no conductance and lose all digits.  The width is that of the matrix where it is found:
-// a level between wider ones at zero energy had 5e-10 in the model and 2.5e-6 in truth, and without it a derivative was off by itself.
+// In meV; poles that the leads make no wider change no conductance and lose all digits.  It is the width that the matrix has,
+// where it is found: a level between wider ones at zero energy had 5e-10 in the model and 2.5e-6 in truth, and without it a
+// derivative was off by its own size.
 constexpr double NARROWEST = 1e-8;
 
 struct ContourPoint {
