@@ -42,13 +42,13 @@ struct ContourPoint {
     Amplitude pole = 0.0;    // z_k = z*
     double isolation = 0.0;  // distance to the next one
     double moved = 0.0;      // distance from the model's
-    double broadening = 0.0; // what of its width is not by the leads
     EndMatrix own{};         // what the model has for G at z
     Amplitude v[8] = {};     // v̄, of which the residue is v̄v̄ᵀ
     Amplitude y[8] = {};     // Γv̄ in the units of the model
     Amplitude scale = 0.0;   // 1/λ = 1 + scale · yᵀ(G − own)y
 
-    void leave_out_if_narrow() {
+    // Of which so much of the width is not by the leads.
+    void leave_out_if_narrow(double broadening) {
         if (!(z.imag() > broadening + NARROWEST)) weight = 0.0;
     }
     void set_residue() {
@@ -145,8 +145,7 @@ inline std::vector<ContourPoint> contour(const Path& path, double hop, const Res
         points.push_back(detail::point_of_pole(pole(k), G, path, leads, hop, broadening));
         points.back().mirrored = seen[k] < poles.paired;
         points.back().isolation = detail::isolation(poles, poles.order[seen[k]]);
-        points.back().broadening = width;
-        points.back().leave_out_if_narrow();
+        points.back().leave_out_if_narrow(width);
     });
     auto add = [&](ContourPoint::Kind kind, const Path::Point& of, const EndMatrix& G) { points.push_back({kind, of.z, of.weight, true, G}); };
     if (path.reaches_gap())

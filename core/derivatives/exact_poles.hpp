@@ -122,7 +122,7 @@ inline void find_exact_poles(const GradientField& field, const Path& path, doubl
                 points[l] = point;
                 points[l].kind = ContourPoint::POLE_OF_MATRIX;
                 points[l].z = std::conj(to), points[l].weight = path.weight_of_pole(points[l].z);
-                points[l].leave_out_if_narrow();
+                points[l].leave_out_if_narrow(field.of.dissipation);
             }
         }
     }
