@@ -72,8 +72,8 @@ class Normal:
     std: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "mean", number_in("mean", self.mean, -LARGEST, LARGEST))
-        object.__setattr__(self, "std", number_in("std", self.std, 0.0, LARGEST))
+        for name, value in _moments("", self.mean, self.std).items():
+            object.__setattr__(self, name, value)
 
     @property
     def range(self) -> tuple[float, float]:
@@ -102,6 +102,14 @@ def _within(xi: ArrayLike) -> FloatArray:
     return np.clip(xi, -FARTHEST, FARTHEST)
 
 
+def _moments(of: str, mean: object, std: object) -> dict[str, float]:
+    """Return mean and standard deviation, checked, of something whose name comes before theirs."""
+    return {
+        "mean": number_in(f"{of}mean", mean, -LARGEST, LARGEST),
+        "std": number_in(f"{of}std", std, 0.0, LARGEST),
+    }
+
+
 def belief_of(name: str, given: object, low: float, high: float, unit: str) -> Belief:
     """Return what a number, a pair or a mapping of mean and std says of a parameter.
 
@@ -113,11 +121,7 @@ def belief_of(name: str, given: object, low: float, high: float, unit: str) -> B
     must = "be a number, a pair (low, high), or a normal distribution (mean and std)"
     if isinstance(given, Mapping):
         require(set(given) == {"mean", "std"}, name, must, f"it is {shown(dict(given))}")
-        numbers = {
-            part: number_in(f"{name}.{part}", given[part], low, LARGEST)
-            for part, low in (("mean", -LARGEST), ("std", 0.0))
-        }
-        given = Normal(**numbers)
+        given = Normal(**_moments(f"{name}.", given["mean"], given["std"]))
     if isinstance(given, tuple | list):
         pair = reals(name, given, must)
         require(pair.shape == (2,), name, must, f"it is {shown(given)}")
