@@ -193,12 +193,16 @@ def _quiet(arguments):
     return None if progress is print else progress
 
 
+def where_slopes_are():
+    """Return strategies for chemical potentials, fields and biases below the gap."""
+    bias = st.one_of(grid(-0.06, 0.06, 3), grid(-0.12, 0.12))
+    return {"mu": grid(-1.0, 30.0), "B": grid(-2.0, 5.0), "bias": bias}
+
+
 @argument_sets(150)
 def test_conductance_gradient_answers_or_refuses(count):
     odd = {
-        "mu": grid(-1.0, 30.0),
-        "B": grid(-2.0, 5.0),
-        "bias": st.one_of(grid(-0.06, 0.06, 3), grid(-0.12, 0.12)),
+        **where_slopes_are(),
         "growth_limit": number(1.0, 1e12, 2),
         "temperature": st.one_of(*[st.just(0.0)] * 3, number(0.02, 0.06, 2)),
         "parameters": st.one_of(st.none(), names(["mu", "g", "V", "no"])),
@@ -240,9 +244,7 @@ TENSORS += [np.array([8.0, 9.0]), np.array([-1.0]), np.array([25.0]), [0.1] * 3,
 @argument_sets(60)
 def test_differentiable_conductance_answers_or_refuses(count):
     odd = {
-        "mu": grid(-1.0, 30.0),
-        "B": grid(-2.0, 5.0),
-        "bias": st.one_of(grid(-0.06, 0.06, 3), grid(-0.12, 0.12)),
+        **where_slopes_are(),
         "temperature": number(0.02, 0.06, 2),
         "parameters": names(["V", "alpha", "g", "gamma", "delta0", "critical_field", "mu"]),
     }
