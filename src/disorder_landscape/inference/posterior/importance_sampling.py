@@ -41,7 +41,7 @@ ENOUGH = 100.0
 """The effective sample size at which it ends, at least, …"""
 ENOUGH_PER_UNKNOWN = 12.0
 """… and for each unknown, …"""
-ITERATIONS = 10
+ITERATIONS = 16
 """… unless so many iterations have not been enough."""
 LEAST_SHARE = 0.25
 """The weights from which the next proposal is made are tempered until the effective sample size is
