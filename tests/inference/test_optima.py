@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from disorder_landscape.inference.optimum import Optimum, add
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.search.gauss_newton import gauss_newton
 from disorder_landscape.inference.search.optima import Optima
@@ -111,3 +112,16 @@ def test_little_noise_takes_two_starts_that_agree(linear):
         optima.start_at(np.zeros(SIZE), 0)
         assert optima.is_settled == settled
     assert not optima.is_wide
+
+
+def test_an_optimum_is_found_again_and_not_twice(linear):
+    """… where the error bars of another, which is found first, allow it to be that one too."""
+    near = Gaussian(AXIS, 0.01 * np.eye(SIZE))
+    wide, sharp = (
+        Optimum(answer, linear.data, height, 0.0)
+        for answer, height in [(Gaussian(np.zeros(SIZE), np.eye(SIZE)), 2.0), (near, 1.0)]
+    )
+    found = [wide, sharp]
+    assert add(linear, found, sharp) == 1
+    assert found[0] is wide
+    assert found[1].found_by == (0, 0)

@@ -113,17 +113,18 @@ def same_answer(observation: Observation, one: Optimum, other: Optimum) -> bool:
 def add(observation: Observation, found: list[Optimum], new: Optimum) -> int:
     """Add an optimum to those found, and return which of them it is.
 
-    Of two that are the same the better one stays.
+    It is the nearest of those that it is the same as. The better one of the two stays.
     """
-    for k, one in enumerate(found):
-        if same_answer(observation, one, new):
-            better = best([one, new])
-            if abs(one.objective - new.objective) <= AS_GOOD:
-                better = replace(better, found_by=one.found_by + new.found_by)
-            found[k] = better
-            return k
-    found.append(new)
-    return len(found) - 1
+    same = [k for k, one in enumerate(found) if same_answer(observation, one, new)]
+    if not same:
+        found.append(new)
+        return len(found) - 1
+    k = min(same, key=lambda k: float(found[k].answer.squared_distance(new.answer.mean)))
+    better = best([found[k], new])
+    if abs(found[k].objective - new.objective) <= AS_GOOD:
+        better = replace(better, found_by=found[k].found_by + new.found_by)
+    found[k] = better
+    return k
 
 
 def misfit(observation: Observation, optimum: Optimum) -> float:
