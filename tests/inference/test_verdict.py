@@ -8,10 +8,12 @@ import pytest
 from disorder_landscape.inference.optimum import Optimum, chi_square_excess, same_answer
 from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.problem.gaussian import Gaussian
+from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.verdict import (
     CONVERGED,
     NOT_CONVERGED,
     NOT_DESCRIBED,
+    is_surely_right,
     verdict,
 )
 from linear_data import SIZE, Linear
@@ -69,6 +71,13 @@ def test_one_answer_that_fits_is_enough_where_the_noise_hides_little(linear, noi
     assert verdict(measured, Outcome([again])) == CONVERGED
     as_likely = Outcome([again, replace(alone, objective=1.0)])  # … which one start has found
     assert verdict(measured, as_likely) == expected
+
+
+@pytest.mark.parametrize(("unknown", "expected"), [({}, True), ({"gamma": (0.1, 0.2)}, False)])
+def test_no_answer_is_surely_right_with_several_parameters(linear, unknown, expected):
+    given = replace(linear.unknowns.given, alpha=(5.0, 15.0), **unknown)
+    measured = replace(linear, unknowns=Unknowns(given), variance=np.full(40, 1e-6))
+    assert is_surely_right(measured) == expected
 
 
 def test_answers_are_the_same_that_error_bars_allow():
