@@ -51,7 +51,7 @@ def is_surely_right(observation: Observation) -> bool:
     """Return whether the noise is so small that an answer that fits needs no other start.
 
     Of the whole landscape none is: there are optima some 10 µeV apart that fit all but as well. Nor
-    is one of a device of which several parameters are unknown. (Of 27 with eleven, and noise of
+    is one of a device of which several parameters are unknown. (Of 28 with eleven, and noise of
     0.005 e²/h, two starts agreed on V 89 and 67 µeV off of two, which the noise explained.)
     """
     unknowns = observation.unknowns
