@@ -22,6 +22,7 @@ from disorder_landscape.inference.posterior.importance_sampling import (
     widened,
 )
 from disorder_landscape.inference.posterior.samples import normality, posterior_samples
+from disorder_landscape.inference.problem import unknowns
 from disorder_landscape.inference.problem.gaussian import Gaussian, log_density, log_mixture
 from disorder_landscape.inference.problem.observation import objective
 from disorder_landscape.inference.problem.unknowns import unknowns_of
@@ -282,7 +283,7 @@ def test_narrow_answers_get_importance_samples_if_much_of_a_device_is_unknown(li
     one = optimum_at(lines, narrow)
     assert len(UNKNOWNS.parameters) == 1
     assert posterior_samples(lines, [one], [0]) is None
-    monkeypatch.setattr(samples, "NARROW_PARAMETERS", 0)
+    monkeypatch.setattr(unknowns, "FEW_PARAMETERS", 0)
     found = posterior_samples(lines, [one], [0])
     assert UNKNOWNS.site_std(found.moments.covariance) == pytest.approx(bar, rel=0.15)
 

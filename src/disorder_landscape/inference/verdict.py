@@ -18,8 +18,6 @@ WRONG_MISFIT = 0.001
 less, an answer that fits is right."""
 FEW_DATA = 5
 """Data for each unknown; a wrong answer may fit fewer, whatever the noise is."""
-FEW_PARAMETERS = 1
-"""Unknown parameters of the device; of more, a wrong answer may fit whatever the noise is."""
 UNSEEN = 0.1
 """There may be so much of the posterior at optima that only one start has found."""
 SAME_MISFIT = 0.05
@@ -51,11 +49,10 @@ def is_surely_right(observation: Observation) -> bool:
     """Return whether the noise is so small that an answer that fits needs no other start.
 
     Of the whole landscape none is: there are optima some 10 µeV apart that fit all but as well. Nor
-    is one of a device of which several parameters are unknown. (Of 28 with eleven, and noise of
-    0.005 e²/h, two starts agreed on V 89 and 67 µeV off of two, which the noise explained.)
+    is one of a device of which several parameters are unknown.
     """
     unknowns = observation.unknowns
-    if unknowns.is_whole_landscape or len(unknowns.parameters) > FEW_PARAMETERS:
+    if unknowns.is_whole_landscape or unknowns.has_several_parameters:
         return False
     count = observation.data.size
     hidden = TOLERATED * np.sqrt(2 / count) * observation.variance.mean()

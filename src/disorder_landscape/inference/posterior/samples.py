@@ -21,16 +21,12 @@ from disorder_landscape.inference.stages import Report, no_report
 from disorder_landscape.model.parameters import BOLTZMANN
 
 STRAIGHT = 0.25
-"""Whether the posterior is a normal distribution is asked if the error bar of V is more than this
-many kT, or …"""
+"""Whether the posterior is a normal distribution is asked if several parameters of the device are
+unknown, or the error bar of V is more than this many kT, or …"""
 LEAST_WIDTH = 1e-3
 """… this in meV, about the width of levels. Conductances are peaks of about that width. By
 Mahalanobis distances of the truth, Laplace's error bars are right below that width and often too
 small above it."""
-NARROW_PARAMETERS = 1
-"""It is asked, too, where more parameters of the device are unknown: the posterior may bend along
-these while V is sharp. (Of 72 wires with six, one was 8.0 µeV off with an error bar of 1.0; that
-was next to Γ = 0.)"""
 NORMAL, LEAST_NORMAL = 0.97, 0.3
 """… The posterior is taken for Laplace's approximation if samples of the latter, weighted by the
 exact posterior, are effective to a share of at least NORMALⁿ, and never less than LEAST_NORMAL:
@@ -64,8 +60,8 @@ def posterior_samples(
     width = max(STRAIGHT * BOLTZMANN * observation.measurement.temperature, LEAST_WIDTH)
     straightened = Straightened.about(chosen.answer, unknowns)
     may_be_normal = len(counts) == 1 and not straightened.parameters
-    has_few_parameters = len(unknowns.parameters) <= NARROW_PARAMETERS
-    is_narrow = has_few_parameters and unknowns.site_std(chosen.answer.covariance) < width
+    is_sharp = unknowns.site_std(chosen.answer.covariance) < width
+    is_narrow = is_sharp and not unknowns.has_several_parameters
     if may_be_normal and (is_narrow or has_many):
         return None
     mixture = [Part(optima[k].answer, float(share[k])) for k in counts]
