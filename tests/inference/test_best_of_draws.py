@@ -1,4 +1,4 @@
-"""The best of many draws: nearer to the truth than any of few, and by the seed alone."""
+"""The best of some draws: nearer to the truth than most of them, and by the seed alone."""
 
 from dataclasses import replace
 
