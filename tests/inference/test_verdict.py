@@ -7,6 +7,7 @@ import pytest
 
 from disorder_landscape.inference.optimum import Optimum, chi_square_excess, same_answer
 from disorder_landscape.inference.outcome import Outcome
+from disorder_landscape.inference.posterior.importance_sampling import ImportanceSamples
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.verdict import (
@@ -71,6 +72,22 @@ def test_one_answer_that_fits_is_enough_where_the_noise_hides_little(linear, noi
     assert verdict(measured, Outcome([again])) == CONVERGED
     as_likely = Outcome([again, replace(alone, objective=1.0)])  # … which one start has found
     assert verdict(measured, as_likely) == expected
+
+
+@pytest.mark.parametrize(("at_the_other", "expected"), [(1, CONVERGED), (40, NOT_CONVERGED)])
+def test_samples_say_how_much_one_start_alone_has_found(linear, at_the_other, expected):
+    """By Laplace's approximation half the posterior is at the optimum that one start has found."""
+    noisy = replace(linear, variance=np.full(40, 0.3**2))
+    there = [Gaussian(far * np.ones(SIZE), np.eye(SIZE)) for far in (0, 100)]
+    optima = [
+        Optimum(answer, noisy.data, objective=0.0, excess=0.0, found_by=(0,) * count)
+        for answer, count in zip(there, (3, 1), strict=True)
+    ]
+    assert verdict(noisy, Outcome(optima)) == NOT_CONVERGED
+    X = np.repeat([one.mean for one in there], [200 - at_the_other, at_the_other], axis=0)
+    samples = ImportanceSamples(X, np.full(200, 1 / 200))
+    assert Outcome(optima, samples).unseen == pytest.approx(at_the_other / 200)
+    assert verdict(noisy, Outcome(optima, samples)) == expected
 
 
 @pytest.mark.parametrize(("unknown", "expected"), [({}, True), ({"gamma": (0.1, 0.2)}, False)])

@@ -94,13 +94,19 @@ def shares(optima: Sequence[Optimum]) -> FloatArray:
     return np.asarray(softmax([one.log_evidence for one in optima]))
 
 
-def unseen(optima: Sequence[Optimum]) -> float:
+def unseen(optima: Sequence[Optimum], share: FloatArray) -> float:
     """Return an estimate of how much of the posterior is at optima that no start has found.
 
     As much as is at those that only one start has found (Good, Biometrika 40, 237 (1953)).
+
+    Parameters
+    ----------
+    optima : sequence of Optimum
+    share : array, shape (optimum,)
+        Of the posterior.
     """
     alone = np.array([len(one.found_by) == 1 for one in optima])
-    return float(shares(optima)[alone].sum())
+    return float(share[alone].sum())
 
 
 def same_answer(observation: Observation, one: Optimum, other: Optimum) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from disorder_landscape.inference.optimum import TOLERATED, Optimum, misfit, unseen
+from disorder_landscape.inference.optimum import TOLERATED, Optimum, misfit
 from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.problem.observation import Observation
 
@@ -37,7 +37,7 @@ def verdict(observation: Observation, outcome: Outcome) -> str:
     """
     chosen = outcome.best
     if chosen.fits:
-        agreed = len(chosen.found_by) > 1 and unseen(outcome.optima) <= UNSEEN
+        agreed = len(chosen.found_by) > 1 and outcome.unseen <= UNSEEN
         known = agreed or is_surely_right(observation)
         return CONVERGED if known and outcome.is_posterior else NOT_CONVERGED
     as_bad = (one for one in outcome.optima if same_misfit(observation, chosen, one))

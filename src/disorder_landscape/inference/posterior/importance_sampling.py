@@ -213,10 +213,7 @@ def fitted(mixture: Sequence[Part], found: ImportanceSamples) -> list[Part]:
     part's covariance is mixed with what it was, the more so the fewer samples it has.
     """
     X, size = found.samples, found.samples.shape[1]
-    share = np.maximum([part.share for part in mixture], np.finfo(float).tiny)
-    density = np.array([log_density(part.scale, X) for part in mixture])
-    log = np.log(share)[:, None] + density
-    responsible = found.weight * softmax(log, axis=0)
+    responsible = found.weight * responsibilities(mixture, X)
     parts = []
     for part, weight in zip(mixture, responsible, strict=True):
         own_share = weight.sum()
@@ -228,6 +225,16 @@ def fitted(mixture: Sequence[Part], found: ImportanceSamples) -> list[Part]:
         covariance = (many * new.covariance + few * part.scale.covariance) / (many + few)
         parts.append(Part(Gaussian(new.mean, covariance), own_share))
     return parts
+
+
+def responsibilities(mixture: Sequence[Part], X: FloatArray) -> FloatArray:
+    """Return how probably each part, if it is normal, has made X (sample, unknown): (part, sample).
+
+    For each sample the sum is one.
+    """
+    share = np.maximum([part.share for part in mixture], np.finfo(float).tiny)
+    density = np.array([log_density(part.scale, X) for part in mixture])
+    return np.asarray(softmax(np.log(share)[:, None] + density, axis=0))
 
 
 def widened(answer: Gaussian, factor: float) -> Gaussian:

@@ -83,7 +83,8 @@ class Optima:
             return False
         needed = AGREEING[0 if is_surely_right(self.observation) else 1]
         enough = not self.is_wide or self.starts >= self.when_wide[0]
-        return enough and len(best(self.found).found_by) >= needed and unseen(self.found) <= UNSEEN
+        agreed = len(best(self.found).found_by) >= needed
+        return enough and agreed and unseen(self.found, shares(self.found)) <= UNSEEN
 
     @property
     def is_exhausted(self) -> bool:
