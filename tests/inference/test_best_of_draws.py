@@ -33,7 +33,7 @@ def test_fewer_and_fewer_draws_are_compared_on_more_and_more_data(linear):
     assert [tuple(one) for one in parts.asked] == [(share, count) for count, share in STAGES]
     near = posterior(linear)
     others = about.draw(np.random.default_rng(2), 1000)
-    assert near.squared_distance(x) < np.quantile(near.squared_distance(others), 0.01)
+    assert near.squared_distance(x) < np.quantile(near.squared_distance(others), 0.05)
 
 
 def test_draws_depend_on_the_seed_alone(linear):
