@@ -9,9 +9,9 @@ from scipy.stats import norm
 from disorder_landscape.inference.optimum import optimum_at
 from disorder_landscape.inference.posterior.importance_sampling import Part, importance_sampling
 from disorder_landscape.inference.posterior.samples import posterior_samples
-from disorder_landscape.inference.posterior.straightened import Straightened
 from disorder_landscape.inference.problem.distributions import Uniform
 from disorder_landscape.inference.problem.gaussian import Gaussian
+from disorder_landscape.inference.problem.straightened import Straightened
 from linear_data import DATA, SIZE, UNKNOWNS, Linear, Measured
 
 UNIFORM = SIZE - 1

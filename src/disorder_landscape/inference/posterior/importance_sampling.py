@@ -25,9 +25,9 @@ from scipy.special import softmax
 
 from disorder_landscape.inference.checkpoint import Cache, uncached
 from disorder_landscape.inference.posterior import proposal
-from disorder_landscape.inference.posterior.straightened import Straightened
 from disorder_landscape.inference.problem.gaussian import Gaussian, log_density, log_mixture
 from disorder_landscape.inference.problem.observation import Observation, objective, overall_misfit
+from disorder_landscape.inference.problem.straightened import Straightened
 from disorder_landscape.inference.stages import Report, no_report
 from disorder_landscape.model.parameters import FloatArray
 

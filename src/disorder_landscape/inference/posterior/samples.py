@@ -14,9 +14,9 @@ from disorder_landscape.inference.posterior.importance_sampling import (
     Part,
     importance_sampling,
 )
-from disorder_landscape.inference.posterior.straightened import Straightened
 from disorder_landscape.inference.problem.gaussian import Gaussian, log_density
 from disorder_landscape.inference.problem.observation import Observation
+from disorder_landscape.inference.problem.straightened import Straightened
 from disorder_landscape.inference.stages import Report, no_report
 from disorder_landscape.model.parameters import BOLTZMANN
 
