@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
-from disorder_landscape.inference.optimum import optimum_at
+from disorder_landscape.inference.optimum import SAME_ANSWER, optimum_at, same_answer
 from disorder_landscape.inference.posterior.importance_sampling import Part, importance_sampling
 from disorder_landscape.inference.posterior.samples import posterior_samples
 from disorder_landscape.inference.problem.distributions import Uniform
@@ -106,6 +106,23 @@ def test_only_ridges_are_straightened():
     known = replace(optimum.answer, covariance=1e-4 * np.eye(SIZE))
     assert Straightened.about(known, UNKNOWNS).parameters == {}
     assert Straightened.about(UNKNOWNS.prior, UNKNOWNS).parameters == {}
+
+
+@pytest.mark.parametrize("along", [-0.9, 0.9])
+def test_ends_of_steps_that_creep_along_a_ridge_are_one_optimum(along):
+    observation, optimum = ridge(0.5)
+
+    def end(*moved):
+        straight = WHOLE.of_white_noise(optimum.answer.mean)
+        straight[[MEAN, UNIFORM]] += moved
+        mean = WHOLE.white_noise(straight)
+        return optimum_at(observation, replace(optimum.answer, mean=mean))
+
+    there = end(along, -along)
+    assert same_answer(observation, optimum, there)
+    assert not same_answer(observation, optimum, end(along, 0.1 - along))
+    apart = optimum.answer.squared_distance(there.answer.mean) / SIZE
+    assert apart > SAME_ANSWER**2  # in white noise
 
 
 def test_straight_variables_and_white_noise_are_the_same():

@@ -14,6 +14,7 @@ from disorder_landscape.inference.problem.observation import (
     objective,
     squared_misfits,
 )
+from disorder_landscape.inference.problem.straightened import Straightened
 from disorder_landscape.model.parameters import FloatArray
 
 TOLERATED = 3.5
@@ -21,7 +22,8 @@ TOLERATED = 3.5
 mean."""
 SAME_ANSWER = 2.0
 """Two optima are the same if they are closer than this many of their standard deviations, root mean
-square over the principal axes. (Where the posterior bends they differ by about one.)"""
+square over the principal axes, where the posterior is straight. (Where it bends they differ by
+about one.)"""
 AS_GOOD = 3.0
 """Starts have led to one optimum where they end with −2 log(posterior) no further apart than this.
 (Ends that error bars allow to be the same may be 80 apart where there are 150 unknowns.)"""
@@ -112,8 +114,18 @@ def unseen(optima: Sequence[Optimum], share: FloatArray) -> float:
 def same_answer(observation: Observation, one: Optimum, other: Optimum) -> bool:
     """Return whether two optima are the same."""
     scatter = max(1.0, misfit(observation, one))
-    squares = one.answer.squared_distance(other.answer.mean) / one.answer.mean.size
+    squares = _squared_distance(observation, one, other) / one.answer.mean.size
     return bool(squares < (SAME_ANSWER * scatter) ** 2)
+
+
+def _squared_distance(observation: Observation, one: Optimum, other: Optimum) -> float:
+    """Return Mahalanobis' distance of two optima squared, in variables in which it is straight.
+
+    In others, the ends of steps that creep along one bent ridge seem far apart.
+    """
+    straightened = Straightened.about(one.answer, observation.unknowns)
+    answer = straightened.of_gaussian(one.answer)
+    return float(answer.squared_distance(straightened.of_white_noise(other.answer.mean)))
 
 
 def add(observation: Observation, found: list[Optimum], new: Optimum) -> int:
@@ -125,7 +137,7 @@ def add(observation: Observation, found: list[Optimum], new: Optimum) -> int:
     if not same:
         found.append(new)
         return len(found) - 1
-    k = min(same, key=lambda k: float(found[k].answer.squared_distance(new.answer.mean)))
+    k = min(same, key=lambda k: _squared_distance(observation, found[k], new))
     better = best([found[k], new])
     if abs(found[k].objective - new.objective) <= AS_GOOD:
         better = replace(better, found_by=found[k].found_by + new.found_by)
