@@ -8,12 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2, norm
 
-from disorder_landscape.inference.optimum import Optimum, best, shares, unseen
-from disorder_landscape.inference.posterior.importance_sampling import (
-    ImportanceSamples,
-    Part,
-    responsibilities,
-)
+from disorder_landscape.inference.optimum import Optimum, best
+from disorder_landscape.inference.posterior.importance_sampling import ImportanceSamples
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.model.parameters import FloatArray
 
@@ -44,18 +40,6 @@ class Outcome:
     def is_posterior(self) -> bool:
         """Whether the error bars are those of the posterior, as far as is known."""
         return self.importance_samples is None or self.importance_samples.is_enough
-
-    @property
-    def unseen(self) -> float:
-        """An estimate of how much of the posterior is at optima that no start has found.
-
-        By Laplace's approximation, or by the importance samples where there are any.
-        """
-        drawn, share = self.importance_samples, shares(self.optima)
-        if drawn is not None:
-            parts = [Part(one.answer, part) for one, part in zip(self.optima, share, strict=True)]
-            share = responsibilities(parts, drawn.samples) @ drawn.weight
-        return unseen(self.optima, share)
 
     def more_probable(self, height: float) -> float:
         """Return how much of the posterior is more probable than this −2 log of its density.

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from disorder_landscape.inference.optimum import TOLERATED, Optimum, misfit
+from disorder_landscape.inference.optimum import TOLERATED, Optimum, misfit, unseen
 from disorder_landscape.inference.outcome import Outcome
+from disorder_landscape.inference.posterior.samples import posterior_shares
 from disorder_landscape.inference.problem.observation import Observation
 
 CONVERGED = "converged"
@@ -37,7 +38,8 @@ def verdict(observation: Observation, outcome: Outcome) -> str:
     """
     chosen = outcome.best
     if chosen.fits:
-        agreed = len(chosen.found_by) > 1 and outcome.unseen <= UNSEEN
+        share = posterior_shares(observation, outcome.optima, outcome.importance_samples)
+        agreed = len(chosen.found_by) > 1 and unseen(outcome.optima, share) <= UNSEEN
         known = agreed or is_surely_right(observation)
         return CONVERGED if known and outcome.is_posterior else NOT_CONVERGED
     as_bad = (one for one in outcome.optima if same_misfit(observation, chosen, one))

@@ -13,12 +13,13 @@ from disorder_landscape.inference.posterior.importance_sampling import (
     ImportanceSamples,
     Part,
     importance_sampling,
+    responsibilities,
 )
 from disorder_landscape.inference.problem.gaussian import Gaussian, log_density
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.problem.straightened import Straightened
 from disorder_landscape.inference.stages import Report, no_report
-from disorder_landscape.model.parameters import BOLTZMANN
+from disorder_landscape.model.parameters import BOLTZMANN, FloatArray
 
 STRAIGHT = 0.25
 """Whether the posterior is a normal distribution is asked if several parameters of the device are
@@ -73,6 +74,24 @@ def posterior_samples(
         if has_many:
             break
     return found
+
+
+def posterior_shares(
+    observation: Observation, optima: Sequence[Optimum], found: ImportanceSamples | None
+) -> FloatArray:
+    """Return the share of the posterior that each optimum has (optimum,).
+
+    By its samples, or by Laplace's approximation where there are none.
+    """
+    share = shares(optima)
+    if found is None:
+        return share
+    straightened = Straightened.about(best(optima).answer, observation.unknowns)
+    mixture = [
+        Part(straightened.of_gaussian(one.answer), float(part))
+        for one, part in zip(optima, share, strict=True)
+    ]
+    return responsibilities(mixture, straightened.of_white_noise(found.samples)) @ found.weight
 
 
 def normality(found: ImportanceSamples, answer: Gaussian) -> float:
