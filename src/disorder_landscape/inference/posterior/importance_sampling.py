@@ -166,7 +166,7 @@ def importance_sampling(
     count = FIRST_BATCH
     drawn: list[tuple[Gaussian, int]] = []
     straight, height = np.empty((0, len(unknowns.names))), np.empty(0)
-    mixture = [Part(straightened.of_gaussian(part.scale), part.share) for part in mixture]
+    mixture = in_straight_variables(mixture, straightened)
     for number in range(ITERATIONS):
         rng = np.random.default_rng([*seed, number])
         each = _numbers(mixture, count)
@@ -198,6 +198,11 @@ def importance_sampling(
             mixture = fitted(mixture, found)
         elif found.power == 1:
             count = min(most, max(SMALLEST_BATCH, found.still_needed))
+
+
+def in_straight_variables(mixture: Sequence[Part], straightened: Straightened) -> list[Part]:
+    """Return a mixture in straight variables, to first order."""
+    return [Part(straightened.of_gaussian(part.scale), part.share) for part in mixture]
 
 
 def _numbers(mixture: Sequence[Part], count: int) -> list[int]:

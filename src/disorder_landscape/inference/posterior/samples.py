@@ -13,6 +13,7 @@ from disorder_landscape.inference.posterior.importance_sampling import (
     ImportanceSamples,
     Part,
     importance_sampling,
+    in_straight_variables,
     responsibilities,
 )
 from disorder_landscape.inference.problem.gaussian import Gaussian, log_density
@@ -87,11 +88,9 @@ def posterior_shares(
     if found is None:
         return share
     straightened = Straightened.about(best(optima).answer, observation.unknowns)
-    mixture = [
-        Part(straightened.of_gaussian(one.answer), float(part))
-        for one, part in zip(optima, share, strict=True)
-    ]
-    return responsibilities(mixture, straightened.of_white_noise(found.samples)) @ found.weight
+    mixture = [Part(one.answer, float(part)) for one, part in zip(optima, share, strict=True)]
+    X = straightened.of_white_noise(found.samples)
+    return responsibilities(in_straight_variables(mixture, straightened), X) @ found.weight
 
 
 def normality(found: ImportanceSamples, answer: Gaussian) -> float:
