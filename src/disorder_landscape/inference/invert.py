@@ -164,6 +164,8 @@ def _search(
         one = next(rounds, None)
         if one is None:
             optima.start_at(found.mean, number)
+            if optima.fits:  # where data are poor, V may never be known to TRIED_FROM
+                starts.start_about(start, number, np.random.default_rng([seed, number, count, 3]))
             return count
         progress(Step(number, ROUND, count, one.misfit, one.spread))
         found, count, spread = one.distribution, count + 1, one.spread
