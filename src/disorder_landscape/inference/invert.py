@@ -164,7 +164,7 @@ def _search(
         one = next(rounds, None)
         if one is None:
             optima.start_at(found.mean, number)
-            if optima.fits:  # where data are poor, V may never be known to TRIED_FROM
+            if optima.fits:  # not settled, perhaps since V has never been known to TRIED_FROM
                 starts.start_about(start, number, np.random.default_rng([seed, number, count, 3]))
             return count
         progress(Step(number, ROUND, count, one.misfit, one.spread))
