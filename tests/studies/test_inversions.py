@@ -7,6 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 from scipy.stats import chi2
 
 from disorder_landscape import ArgumentError
@@ -32,7 +35,7 @@ from disorder_landscape.inference.invert import usable_network_features
 from disorder_landscape.inference.optimum import optimum_at
 from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.problem.gaussian import Gaussian
-from disorder_landscape.inference.problem.measurement import empty_measurement
+from disorder_landscape.inference.problem.measurement import QUANTUM, empty_measurement, simulated
 from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED
 from disorder_landscape.model.parameters import Nanowire
 from disorder_landscape.studies import inversions, runner, unmodelled
@@ -55,6 +58,9 @@ from disorder_landscape.studies.unmodelled import (
     MODEL_ALONE,
     NOTHING,
     changed,
+    in_series,
+    true_conductances,
+    true_noise,
     unmodelled_row,
 )
 
@@ -252,6 +258,31 @@ def test_the_table_of_what_the_model_lacks_counts_both_checks(tmp_path):
     assert nothing.startswith("| the model alone |")
     assert wide.startswith("| `wide.toml` | Δ₀ 20 % smaller, or larger | 1 |")
     assert gap.endswith("| 5 | 2 | 1e+02, 1e+02 | 4 | 2, 3 | 1 | 0, 0 |")
+
+
+@given(arrays(float, (3, 4), elements=st.floats(0, 2)), st.floats(0, 5e3), st.floats(0, 5e3))
+def test_resistances_in_series_add_up(G, first, second):
+    one_after_the_other = in_series(second, in_series(first, G))
+    np.testing.assert_allclose(one_after_the_other, in_series(first + second, G), atol=1e-12)
+
+
+def test_a_lead_without_the_other_is_in_series_with_its_resistance():
+    G = np.array([0.5, 2.0, 0.0, 0.0])
+    behind = in_series(1 / QUANTUM, G)
+    np.testing.assert_allclose(behind, [1 / (1 / 0.5 + 1), 1 / (1 / 2.0 + 1), 0, 0])
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_something_is_other_than_the_model_has_it(kind):
+    config = network_of(FIVE, 0.01).config.dataset.model_copy(update={"mu_points": 4})
+    wire, settings = realization(config, 0).wire, empty_measurement(config)
+    task = unmodelled.Task(FIVE, MODEL_ALONE, 0.01, kind, 0)
+    change = abs(true_conductances(task, wire, settings) - simulated(wire, settings))
+    same = {NOTHING: settings.B.size, "jump": settings.B.size // 2, "errors": settings.B.size}
+    before, after = np.split(change, [same.get(kind, 0)], axis=1)
+    assert not before.any()
+    assert not after.size or after.max() > 0.01
+    assert (true_noise(task) == task.noise) == (kind != "errors")
 
 
 @pytest.mark.parametrize(

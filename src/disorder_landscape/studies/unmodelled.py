@@ -18,6 +18,7 @@ import numpy as np
 from disorder_landscape.config import Positive
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.inference.problem.measurement import (
+    QUANTUM,
     Measurement,
     empty_measurement,
     simulated,
@@ -38,7 +39,21 @@ from disorder_landscape.studies.named_priors import PriorName, named_prior
 from disorder_landscape.studies.rows import rounded
 from disorder_landscape.studies.study import Part, Place, Plan
 
-Kind = Literal["nothing", "gap", "temperature", "barrier", "uncorrelated", "dissipation", "bias"]
+Kind = Literal[
+    "nothing",
+    "gap",
+    "temperature",
+    "barrier",
+    "uncorrelated",
+    "dissipation",
+    "bias",
+    "mass",
+    "length",
+    "leads",
+    "resistance",
+    "jump",
+    "errors",
+]
 NOTHING: Kind = "nothing"
 KINDS: dict[Kind, str] = {
     NOTHING: "the model is right",
@@ -48,10 +63,18 @@ KINDS: dict[Kind, str] = {
     "uncorrelated": "V of each site independent, as strong",
     "dissipation": "Γ = 1 µeV on each site",
     "bias": "biases 5 µV higher than stated",
+    "mass": "m* 10 % smaller, or larger",
+    "length": "the wire 5 % shorter, or longer",
+    "leads": "µ of the leads 20 % smaller, or larger",
+    "resistance": "1 kΩ in series with each lead",
+    "jump": "µ 20 µeV higher from the middle field on",
+    "errors": "errors half as large as stated, or twice",
 }
 """What is other than the model has it; of two, the index takes turns."""
 HOT, DISSIPATION, OFFSET = 0.1, 1e-3, 5e-3
 """In K, meV and meV."""
+RESISTANCE, JUMP = 1e3, 0.02
+"""In Ω and meV."""
 MODEL_ALONE = "model"
 """Of a task: all but the disorder and α is taken as known."""
 STATED = Nanowire.barrier[0]
@@ -134,13 +157,45 @@ def changed(
             return replace(wire, dissipation=DISSIPATION, parent_dissipation=0.0), settings
         case "bias":
             return wire, replace(settings, bias=settings.bias + OFFSET)
+        case "mass":
+            return replace(wire, mass=wire.mass * (0.9 if first else 1.1)), settings
+        case "length":
+            return replace(wire, lattice=wire.lattice * (0.95 if first else 1.05)), settings
+        case "leads":
+            return replace(wire, lead_mu=wire.lead_mu * (0.8 if first else 1.2)), settings
         case _:
             return wire, settings
 
 
 def true_conductances(task: Task, wire: Nanowire, settings: Measurement) -> FloatArray:
     """Return what there is to measure, shape (mu, B, bias, channel), in e²/h."""
-    return simulated(*changed(task.kind, task.index, wire, settings))
+    G = simulated(*changed(task.kind, task.index, wire, settings))
+    if task.kind == "resistance":
+        return in_series(RESISTANCE, G)
+    if task.kind == "jump":
+        later = slice(settings.B.size // 2, None)
+        shifted = replace(settings, mu=settings.mu + JUMP, B=settings.B[later])
+        G[:, later] = simulated(wire, shifted)
+    return G
+
+
+def in_series(resistance: float, G: FloatArray) -> FloatArray:
+    """Return conductances (…, channel) in e²/h with a resistance in Ω between each lead and wire.
+
+    Of the changes of the voltages a part drops there, δI = M (δV − R δI). Currents flow into the
+    wire, so that the nonlocal conductances stand in M with a minus. The voltages themselves stay.
+    """
+    LL, RR, LR, RL = np.moveaxis(G, -1, 0)
+    M = np.stack([np.stack([LL, -LR], axis=-1), np.stack([-RL, RR], axis=-1)], axis=-2)
+    M = np.linalg.solve(np.eye(2) + resistance * QUANTUM * M, M)
+    return np.stack([M[..., 0, 0], M[..., 1, 1], -M[..., 0, 1], -M[..., 1, 0]], axis=-1)
+
+
+def true_noise(task: Task) -> float:
+    """Return the standard deviation of the errors in e²/h, which may be other than stated."""
+    if task.kind == "errors":
+        return task.noise * (0.5 if task.index % 2 == 0 else 2.0)
+    return task.noise
 
 
 def unmodelled_row(task: Task, samples: int, every: int) -> dict[str, object]:
@@ -166,7 +221,8 @@ def unmodelled_row(task: Task, samples: int, every: int) -> dict[str, object]:
     if not alone:
         unknowns = Unknowns(named_prior(task.prior).for_measurement(settings))
     G = true_conductances(task, one.wire, settings)
-    observation = Observation(measured(settings, G, task.noise, task.index), unknowns, noise)
+    errors = true_noise(task)
+    observation = Observation(measured(settings, G, errors, task.index), unknowns, noise)
     found = inverted(observation, network if alone else None, task.index)
     mean = found.answer.mean
     true, _ = changed(task.kind, task.index, one.wire, settings)
@@ -175,7 +231,7 @@ def unmodelled_row(task: Task, samples: int, every: int) -> dict[str, object]:
         settings, mu=config.mu[::every], B=config.B[::every], barrier=OTHER_BARRIERS
     )
     other_G = true_conductances(task, replace(one.wire, barrier=OTHER_BARRIERS), elsewhere)
-    further = Observation(measured(elsewhere, other_G, task.noise, task.index, 3), unknowns, noise)
+    further = Observation(measured(elsewhere, other_G, errors, task.index, 3), unknowns, noise)
     rng = np.random.default_rng([SEED, task.index, 4])
     predicted = predicted_at(elsewhere, unknowns, found.found.draw(rng, samples))
     return rounded(
