@@ -7,9 +7,9 @@ import pytest
 
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.search.gauss_newton import gauss_newton
-from disorder_landscape.inference.search.optima import Optima
+from disorder_landscape.inference.search.optima import STARTS_WHEN_WIDE, Optima
 from disorder_landscape.inference.search.starts import STARTS, Starts
-from linear_data import DATA, SIZE, Linear, posterior
+from linear_data import DATA, SIZE, Linear, Measured, posterior
 
 AXIS = np.eye(SIZE)[0]
 
@@ -85,3 +85,28 @@ def test_where_no_start_fits_there_are_few(parts):
     np.testing.assert_array_equal(begun[0], about.mean)
     assert starts.optima.found == []
     assert not starts.optima.fits
+
+
+def test_starts_go_on_about_the_same_distribution(parts):
+    """… as many as before, and at most as many as are worth their time; its mean is tried once."""
+    begun = []
+
+    def steps(of, x, attempt, name, known, goal):
+        if name.endswith("some"):
+            begun.append((attempt, x))
+        return gauss_newton(of, x, known=known)
+
+    wide = replace(parts, variance=np.ones(DATA), measurement=Measured(temperature=1e-3))
+    starts = starts_of(wide, steps)
+    about = Gaussian(np.ones(SIZE), np.eye(SIZE))
+    starts.start_about(about, 3, np.random.default_rng(1))
+    assert starts.optima.starts == len(begun) == STARTS_WHEN_WIDE[0]
+    for number, count in enumerate((32, 64)):
+        assert starts.optima.is_settled
+        assert not starts.optima.is_exhausted
+        starts.go_on(np.random.default_rng([2, number]))
+        assert starts.optima.starts == len(begun) == count
+    assert starts.optima.is_exhausted
+    assert {attempt for attempt, _ in begun} == {3}
+    assert [np.array_equal(x, about.mean) for _, x in begun] == [True] + 63 * [False]
+    assert len(np.unique([x for _, x in begun], axis=0)) == 64

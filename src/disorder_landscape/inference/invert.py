@@ -2,7 +2,8 @@
 
 An attempt is a first guess, and Gauss–Newton steps from many starts about it, with regression
 rounds in between that bring it nearer. There are attempts until the verdict is known. Importance
-sampling follows where the posterior is wide.
+sampling follows where the posterior is wide. There are more starts if it tells that optima which
+only one start has found have much of the posterior, or if it has too few effective samples.
 """
 
 from __future__ import annotations
@@ -40,6 +41,7 @@ from disorder_landscape.inference.stages import (
     silent,
     within,
 )
+from disorder_landscape.inference.verdict import CONVERGED, verdict
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.model.parameters import FloatArray
 
@@ -85,18 +87,37 @@ def invert(
     """
     cache = (checkpoint if checkpoint is not None else Checkpoint()).cached
     steps = partial(_steps, cache, progress)
-    rounds = 0
     if observation.unknowns.is_whole_landscape:
         optima, attempts = optima_of_whole_landscape(observation, steps, seed, cache)
-    else:
-        found = _optima_of_few_unknowns(observation, model, steps, seed, settings, progress, cache)
-        optima, attempts, rounds = found
+        return _outcome(observation, optima, attempts, 0, [seed, 2**31 + 2], progress, cache)
+    found = _starts_of_few_unknowns(observation, model, steps, seed, settings, progress, cache)
+    starts, attempts, rounds = found
+    optima, seeds = starts.optima, [seed, 2**31 + 2]
+    while True:
+        outcome = _outcome(observation, optima, attempts, rounds, seeds, progress, cache)
+        is_enough = verdict(observation, outcome) == CONVERGED or not optima.is_wide
+        if is_enough or optima.is_exhausted:
+            return outcome
+        seeds = [seed, 2**31 + 2, optima.starts]
+        starts.go_on(np.random.default_rng([seed, 2**31 + 5, optima.starts]))
+
+
+def _outcome(
+    observation: Observation,
+    optima: Optima,
+    attempts: int,
+    rounds: int,
+    seeds: Sequence[int],
+    progress: Progress,
+    cache: Cache,
+) -> Outcome:
+    """Return what optima come to, with samples where the posterior is no normal distribution."""
     report = within(progress, attempts - 1, IMPORTANCE_SAMPLING)
-    drawn = posterior_samples(observation, optima.found, [seed, 2**31 + 2], cache, report)
-    return Outcome(optima.found, drawn, attempts, rounds)
+    drawn = posterior_samples(observation, optima.found, seeds, cache, report)
+    return Outcome(tuple(optima.found), drawn, attempts, rounds)
 
 
-def _optima_of_few_unknowns(
+def _starts_of_few_unknowns(
     observation: Observation,
     model: TrainedModel | None,
     steps: Steps,
@@ -104,8 +125,8 @@ def _optima_of_few_unknowns(
     settings: InversionSettings | None,
     progress: Progress,
     cache: Cache,
-) -> tuple[Optima, int, int]:
-    """Return optima of few unknowns, and how many attempts and rounds they have taken."""
+) -> tuple[Starts, int, int]:
+    """Return starts that have led to optima, and how many attempts and rounds these have taken."""
     features = usable_network_features(model, observation)
     settings = settings or usual_settings(features)
     prior, guess = observation.unknowns.prior, None
@@ -122,7 +143,7 @@ def _optima_of_few_unknowns(
         count += _search(starts, start, rounds, seed, number, progress)
         if starts.optima.is_done:
             break
-    return starts.optima, number + 1, count
+    return starts, number + 1, count
 
 
 def _steps(

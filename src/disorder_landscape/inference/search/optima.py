@@ -70,8 +70,8 @@ class Optima:
 
     @property
     def is_wide(self) -> bool:
-        """Whether the posterior may have several maxima."""
-        if is_surely_right(self.observation):
+        """Whether the best optimum explains the data, but others may do so, too."""
+        if not self.fits or is_surely_right(self.observation):
             return False
         bar = self.observation.unknowns.site_std(best(self.found).answer.covariance)
         return bar > WIDE * BOLTZMANN * self.observation.measurement.temperature
@@ -89,7 +89,7 @@ class Optima:
     @property
     def is_exhausted(self) -> bool:
         """Whether there have been as many starts as are worth their time."""
-        return self.fits and self.is_wide and self.starts >= self.when_wide[1]
+        return self.is_wide and self.starts >= self.when_wide[1]
 
     @property
     def is_done(self) -> bool:

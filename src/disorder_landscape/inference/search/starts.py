@@ -53,17 +53,20 @@ class Starts:
     some: Observation = field(init=False)
     _on_some: list[tuple[Optimum, int | None]] = field(default_factory=list)
     """Optima on these data, and which one of all data they lead to, if any."""
+    _about: tuple[Gaussian, int] = field(init=False)
+    """The last distribution, and in which attempt."""
 
     def __post_init__(self, rng: np.random.Generator) -> None:
         self.some = self.optima.observation.on_some_lines(SHARE, FEWEST, rng)
 
-    def start_about(self, found: Gaussian, attempt: int, rng: np.random.Generator) -> None:
-        """Let steps start at the mean of a distribution, and at draws from it."""
+    def start_about(
+        self, found: Gaussian, attempt: int, rng: np.random.Generator, tried: int = 0
+    ) -> None:
+        """Let steps start at the mean of a distribution, if none has been tried, and at draws."""
+        self._about = found, attempt
         optima, (few, more) = self.optima, STARTS
-        tried = 0
         while not optima.is_done:
-            fits = optima.fits
-            is_wide = fits and optima.is_wide
+            fits, is_wide = optima.fits, optima.is_wide
             if tried >= (more if fits else few) and not is_wide:
                 return
             (own,) = rng.spawn(1)
@@ -78,6 +81,13 @@ class Starts:
                 x = found.draw(own, 2)[0]
             self.start_from(x, attempt)
             tried += 1
+
+    def go_on(self, rng: np.random.Generator) -> None:
+        """Let there be twice as many starts, or more, about the same distribution as the last."""
+        optima, (found, attempt) = self.optima, self._about
+        most = optima.when_wide[1]
+        optima.when_wide = min(2 * optima.starts, most), most
+        self.start_about(found, attempt, rng, tried=1)
 
     def start_from(self, x: FloatArray, attempt: int) -> None:
         """Find the optimum that steps from x (unknown,) lead to."""
