@@ -87,18 +87,19 @@ def invert(
     """
     cache = (checkpoint if checkpoint is not None else Checkpoint()).cached
     steps = partial(_steps, cache, progress)
+    seeds = [seed, 2**31 + 2]
     if observation.unknowns.is_whole_landscape:
         optima, attempts = optima_of_whole_landscape(observation, steps, seed, cache)
-        return _outcome(observation, optima, attempts, 0, [seed, 2**31 + 2], progress, cache)
+        return _outcome(observation, optima, attempts, 0, seeds, progress, cache)
     found = _starts_of_few_unknowns(observation, model, steps, seed, settings, progress, cache)
     starts, attempts, rounds = found
-    optima, seeds = starts.optima, [seed, 2**31 + 2]
+    optima = starts.optima
     while True:
         outcome = _outcome(observation, optima, attempts, rounds, seeds, progress, cache)
         is_enough = verdict(observation, outcome) == CONVERGED or not optima.is_wide
         if is_enough or optima.is_exhausted:
             return outcome
-        seeds = [seed, 2**31 + 2, optima.starts]
+        seeds = [*seeds[:2], optima.starts]
         starts.go_on(np.random.default_rng([seed, 2**31 + 5, optima.starts]))
 
 
