@@ -35,13 +35,19 @@ def announce_repeated(
 ) -> None:
     """Say how long an action will take that is done so many times.
 
-    It is done with 0, 1, … for a second, or once, if all of it is soon over then.
+    It is done with 0, which does not count, since it may load what the others need, and then with
+    1, 2, … for a second; or with 0 alone, if all of it is soon over.
     """
     begun = time.perf_counter()
+    action(0)
+    now = time.perf_counter()
+    if (now - begun) * times < WORTH_SAYING:
+        return
+    begun = now
     for done in count(1):
-        action(done - 1)
+        action(done)
         seconds = time.perf_counter() - begun
-        if seconds >= SECOND or seconds * times < WORTH_SAYING:
+        if seconds >= SECOND:
             announce(what, seconds / done * times, say)
             return
 
