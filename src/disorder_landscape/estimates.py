@@ -39,16 +39,15 @@ def announce_repeated(
     1, 2, … for a second; or with 0 alone, if all of it is soon over.
     """
     begun = time.perf_counter()
+    pace = Pace(what, times, say, warm_up=1)
     action(0)
-    now = time.perf_counter()
-    if (now - begun) * times < WORTH_SAYING:
+    if (time.perf_counter() - begun) * times < WORTH_SAYING:
         return
-    begun = now
+    pace.step()
     for done in count(1):
         action(done)
-        seconds = time.perf_counter() - begun
-        if seconds >= SECOND:
-            announce(what, seconds / done * times, say)
+        pace.step()
+        if pace.is_known:
             return
 
 
@@ -77,12 +76,12 @@ class Pace:
     ) -> None:
         self.what, self.total, self.say = what, total, say
         self.warm_up, self.at_a_time = warm_up, at_a_time
-        self._steps, self._done, self._said = 0, 0.0, False
+        self._steps, self._done, self.is_known = 0, 0.0, False
         self._begun = time.perf_counter()
 
     def step(self, amount: float = 1.0) -> None:
         """Count a step that is done."""
-        if self._said:
+        if self.is_known:
             return
         self._steps += 1
         now = time.perf_counter()
@@ -92,4 +91,4 @@ class Pace:
         self._done += amount
         if now - self._begun >= SECOND and self._steps >= self.warm_up + self.at_a_time:
             announce(self.what, (now - self._begun) * self.total / self._done, self.say)
-            self._said = True
+            self.is_known = True
