@@ -8,7 +8,7 @@ import pytest
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.search.gauss_newton import gauss_newton
 from disorder_landscape.inference.search.optima import STARTS_WHEN_WIDE, Optima
-from disorder_landscape.inference.search.starts import STARTS, Starts
+from disorder_landscape.inference.search.starts import MOST_STARTS, STARTS, Starts
 from linear_data import DATA, SIZE, Linear, Measured, posterior
 
 AXIS = np.eye(SIZE)[0]
@@ -101,12 +101,12 @@ def test_starts_go_on_about_the_same_distribution(parts):
     about = Gaussian(np.ones(SIZE), np.eye(SIZE))
     starts.start_about(about, 3, np.random.default_rng(1))
     assert starts.optima.starts == len(begun) == STARTS_WHEN_WIDE[0]
-    for number, count in enumerate((32, 64)):
+    for number, count in enumerate((32, 64, MOST_STARTS)):
         assert starts.optima.is_settled
-        assert not starts.optima.is_exhausted
+        assert starts.optima.is_exhausted == (count > STARTS_WHEN_WIDE[1])
         starts.go_on(np.random.default_rng([2, number]))
         assert starts.optima.starts == len(begun) == count
     assert starts.optima.is_exhausted
     assert {attempt for attempt, _ in begun} == {3}
-    assert [np.array_equal(x, about.mean) for _, x in begun] == [True] + 63 * [False]
-    assert len(np.unique([x for _, x in begun], axis=0)) == 64
+    assert [np.array_equal(x, about.mean) for _, x in begun] == [True] + (count - 1) * [False]
+    assert len(np.unique([x for _, x in begun], axis=0)) == count

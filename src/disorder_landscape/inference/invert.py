@@ -30,7 +30,7 @@ from disorder_landscape.inference.search.regression_rounds import (
     RoundSettings,
     regression_rounds,
 )
-from disorder_landscape.inference.search.starts import Starts
+from disorder_landscape.inference.search.starts import MOST_STARTS, Starts
 from disorder_landscape.inference.search.whole_landscape import optima_of_whole_landscape
 from disorder_landscape.inference.stages import (
     GAUSS_NEWTON,
@@ -97,7 +97,7 @@ def invert(
     while True:
         outcome = _outcome(observation, optima, attempts, rounds, seeds, progress, cache)
         is_enough = verdict(observation, outcome) == CONVERGED or not optima.is_wide
-        if is_enough or optima.is_exhausted:
+        if is_enough or optima.starts >= MOST_STARTS:
             return outcome
         seeds = [*seeds[:2], optima.starts]
         starts.go_on(np.random.default_rng([seed, 2**31 + 5, optima.starts]))

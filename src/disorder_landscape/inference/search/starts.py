@@ -25,6 +25,8 @@ FEWEST = 7
 """Lines of μ and of B that these have at least."""
 STARTS = 2, 4
 """So many starts about a distribution, if none has led to an optimum that fits, or if one has."""
+MOST_STARTS = 128
+"""There are no more than this, even if samples of the posterior ask for more."""
 NEARBY = 0.2
 """Where an answer that fits is right all but surely, another start must find it again from this
 part of the distribution's width away."""
@@ -83,10 +85,13 @@ class Starts:
             tried += 1
 
     def go_on(self, rng: np.random.Generator) -> None:
-        """Let there be twice as many starts, or more, about the same distribution as the last."""
+        """Let there be twice as many starts, or more, about the same distribution as the last.
+
+        At most `MOST_STARTS` in all.
+        """
         optima, (found, attempt) = self.optima, self._about
-        most = optima.when_wide[1]
-        optima.when_wide = min(2 * optima.starts, most), most
+        least = min(2 * optima.starts, MOST_STARTS)
+        optima.when_wide = least, max(least, optima.when_wide[1])
         self.start_about(found, attempt, rng, tried=1)
 
     def start_from(self, x: FloatArray, attempt: int) -> None:
