@@ -52,29 +52,6 @@ inline void fill_rest(const EnergyPlan& plan, RationalConductances& of, const Co
     remainder(plan.nodes_above(), plan.above.data(), at_above, keep(2 * below, plan.nodes_above()));
 }
 
-// The error of an average of which the poles beyond the gap are none, since there the model knows nothing of the wire: how much
-// more their average in closed form is than that of their values.
-inline double error_of_poles_beyond_gap(const EnergyPlan& plan, const PoleTerms& terms) {
-    std::vector<int> which;
-    for (int n = 0; n < terms.count; ++n)
-        if (terms.x[n] > plan.gap) which.push_back(n);
-    if (which.empty()) return 0.0;
-    RationalConductances of{PoleTerms(int(which.size())), {}};
-    for (size_t k = 0; k < which.size(); ++k) {
-        of.poles.x[k] = terms.x[which[k]], of.poles.y[k] = terms.y[which[k]];
-        for (int hole = 0; hole < 2; ++hole)
-            for (int c = 0; c < 4; ++c)
-                of.poles.re[hole][c][k] = terms.re[hole][c][which[k]], of.poles.im[hole][c][k] = terms.im[hole][c][which[k]];
-    }
-    const std::vector<Conductances<double>> none(std::max({plan.nodes, plan.samples, plan.nodes_above()}), Conductances<double>{});
-    fill_rest(plan, of, none.data(), none.data(), none.data());
-    std::vector<double> average(4 * plan.biases);
-    of.average(plan.weights, plan.bias, plan.kT, average.data());
-    double worst = 0.0;
-    for (double value : average) worst = largest(worst, std::abs(value));
-    return worst;
-}
-
 }  // namespace detail
 
 // Write the thermal conductances of one set, shape (bias, 4), and its model, if asked for; return the error estimate in
@@ -89,6 +66,7 @@ inline double rational_average(const EnergyPlan& plan, const detail::ThermalFiel
     Resonances found = find_poles(starts, levels, leads, batch);
     if (!found.whole) return INFINITY;
     RationalConductances of{conductance_terms(found, leads, width, batch), {}};
+    of.poles.leave_out_beyond(plan.gap);
 
     const int m = plan.nodes, below = plan.nodes_below(), over = plan.nodes_above();
     std::vector<Conductances<double>> broadened;
@@ -104,7 +82,7 @@ inline double rational_average(const EnergyPlan& plan, const detail::ThermalFiel
         remainder(1, plan.above.data() + over, bare + below + COMPARED + over, [&](int c, int, int sign, double value) { at.above[c][sign] = value; });
     for (int k = 0; k < COMPARED; ++k) at.shares[k] = detail::share_that_counts(at.checks[k], plan.kT, of.poles) * at.of_kernel[k];
     double of_model = SAFETY * hop * detail::mismatch(at, leads, width, data, batch);
-    double of_rest = detail::largest(detail::error_of_rest(plan, of, at), detail::error_of_poles_beyond_gap(plan, of.poles));
+    double of_rest = detail::error_of_rest(plan, of, at);
     double estimate = detail::largest(of_model, of_rest);
     if (model != nullptr) *model = {m, list, {std::move(found.poles), {0, 0}, std::move(found.order), found.paired, found.spare, true}, std::move(of)};
     return estimate;

@@ -31,6 +31,11 @@ struct PoleTerms {
         for (int k = 0; k < 8; ++k) re[k / 4][k % 4] = take(), im[k / 4][k % 4] = take();
         std::fill(y, y + padded(count), -1.0);
     }
+    // Leave out poles beyond the gap, of which the levels below it tell nothing.  What they make below it is smooth in τ.
+    void leave_out_beyond(double gap) {
+        for (int n = 0; n < count; ++n)
+            for (int k = 0; k < 8 && x[n] > gap; ++k) re[k / 4][k % 4][n] = im[k / 4][k % 4][n] = 0.0;
+    }
     PoleTerms(PoleTerms&&) = default;  // the numbers stay where they are
     PoleTerms& operator=(PoleTerms&&) = default;
 };
