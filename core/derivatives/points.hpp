@@ -11,11 +11,14 @@ inline bool is_at_pole(const ContourPoint& of) { return of.kind == ContourPoint:
 
 namespace detail {
 
+// What is summed beside the derivatives by V: the changes up to BY_ENERGY, and the shift of the levels below the gap.
+constexpr int OF_LEVELS = BY_ENERGY + 1, SUMS = OF_LEVELS + 1;
+
 // Room for the points of one set.
 struct GradientRoom {
     std::vector<SiteColumns<PointLanes::R>> sites;
     std::vector<PointLanes::R> by_V;  // (site, bias, conductance)
-    std::vector<PointLanes::R> others;  // (BY_ENERGY + 1, bias, conductance)
+    std::vector<PointLanes::R> others;  // (SUMS, bias, conductance)
 };
 
 // Find Ḡ(z) = G(z*)* of the ends at up to REGISTER points.
@@ -45,7 +48,7 @@ class PointsOfSet {
         C plus = C(0.0), minus = C(0.0);  // with K_V and K_−V
     };
     std::vector<Weights> kernel;  // (bias,), zero where there is no point
-    C share = C(0.0), energy = C(0.0);  // s(z) of a shift, and z
+    C of_all = C(0.0), of_levels = C(0.0), energy = C(0.0);  // s(z) of the two shifts, and z
     DriveAt<R> drives[COUNT];
     SiteSums<R> sums[COUNT];
 
@@ -65,12 +68,14 @@ class PointsOfSet {
     }
 
 public:
-    PointsOfSet(const GradientField& field, const EnergyPlan& plan, double mu, const ContourPoint* points, int count, ShiftWeight shift,
+    PointsOfSet(const GradientField& field, const ShiftedAverages& averages, double mu, const ContourPoint* points, int count,
                 GradientRoom& room)
-        : field(field), points(points), count(count), room(room), at(field, mu, points, count), kernel(plan.biases) {
+        : field(field), points(points), count(count), room(room), at(field, mu, points, count), kernel(averages.plan.biases) {
+        const EnergyPlan& plan = averages.plan;
         for (int l = 0; l < count; ++l) {
             const ContourPoint& point = points[l];
-            Batch::set(share, l, shift.at(point.z)), Batch::set(energy, l, point.z);
+            Batch::set(of_all, l, averages.all.at(point.z)), Batch::set(of_levels, l, averages.levels.at(point.z));
+            Batch::set(energy, l, point.z);
             Amplitude mirrored = point.mirrored ? point.weight : 0.0;
             for (int v = 0; v < plan.biases; ++v) {
                 Batch::set(kernel[v].plus, l, point.weight * thermal_kernel(point.z, plan.bias[v], plan.kT));
@@ -172,7 +177,7 @@ private:
 
     // All but what the derivatives by V say.
     void add_changes() const {
-        C by[BY_ENERGY + 1][COUNT];
+        C by[SUMS][COUNT];
         double per_meV = 1 / field.hop;
         auto minus_twice = [](C x) { return -(x + x); };
         for (int k = 0; k < COUNT; ++k) {
@@ -189,11 +194,13 @@ private:
             by[BY_LEAD_ZEEMAN][k] = leads_do[LEAD_ZEEMAN];
             C of_wire = pairing(at.by_energy);
             by[BY_DISSIPATION][k] = C(-of_wire.im, of_wire.re);
-            by[BY_ENERGY][k] = (leads_do[LEAD_ENERGY] + of_wire) * share;
+            C by_energy = leads_do[LEAD_ENERGY] + of_wire;
+            by[BY_ENERGY][k] = by_energy * of_all, by[OF_LEVELS][k] = by_energy * of_levels;
         }
         for (int change = BY_ZEEMAN; change < BY_ENERGY; ++change)
             if (change != BY_DISSIPATION || COUNT == WITH_RETURNS) add_to_others(change, by[change]);
-        add_to_others(BY_ENERGY, by[BY_ENERGY], -1.0);  // p(−ω) has the slope of the other sign
+        add_to_others(BY_ENERGY, by[BY_ENERGY], -1.0);  // p(−ω) has the slope of the other sign, and
+        add_to_others(OF_LEVELS, by[OF_LEVELS]);        // is shifted in the other sense
     }
 };
 

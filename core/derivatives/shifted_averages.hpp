@@ -5,7 +5,8 @@
 //
 //     ∫ s p' K_V dω = ∂/∂V ∫ s p K_V dω − ∫ s' p K_V dω,    s = 1 − (ω/Δ₀)²,
 //
-// and the model of p, of poles and a rest, is one of s p and of s' p, too.
+// and the model of p, of poles and a rest, is one of s p and of s' p, too.  So it is where only the levels below the gap are shifted,
+// by s = ω − ω³/Δ₀².
 #pragma once
 
 #include "../thermal/average.hpp"
@@ -19,13 +20,23 @@ enum Change { BY_MU, BY_ZEEMAN, BY_ALPHA, BY_GAMMA, BY_DELTA0, BY_LEAD_ZEEMAN, B
 constexpr int CHANGES = 10, THROUGH_KERNEL = 2;
 constexpr double SHIFT = 2e-3;  // in kT: of bias and kT to either side, for the difference of closed forms
 
-// s and s' of a shift; 1 and 0 where the window ends below the gap.
-struct ShiftWeight {
+// s and s' of a shift of all energies; 1 and 0 where the window ends below the gap.
+struct ShiftOfAll {
+    static constexpr bool ODD = false;
     double over_square;  // 1/Δ₀² or 0
-    template <class N>
-    N at(N omega) const { return 1.0 - omega * omega * over_square; }
-    template <class N>
-    N slope(N omega) const { return -2.0 * omega * over_square; }
+    Amplitude at(Amplitude omega) const { return 1.0 - omega * omega * over_square; }
+    Amplitude slope(Amplitude omega) const { return -2.0 * omega * over_square; }
+};
+
+// The same of a shift of the levels below the gap.
+struct ShiftOfLevels {
+    static constexpr bool ODD = true;
+    double over_square;
+    Amplitude at(Amplitude omega) const { return beyond(omega) ? 0.0 : omega * (1.0 - omega * omega * over_square); }
+    Amplitude slope(Amplitude omega) const { return beyond(omega) ? 0.0 : 1.0 - 3.0 * omega * omega * over_square; }
+
+private:
+    bool beyond(Amplitude omega) const { return omega.imag() == 0 && omega.real() * omega.real() * over_square > 1; }
 };
 
 namespace detail {
@@ -64,7 +75,8 @@ inline RationalConductances times(const EnergyPlan& plan, const RationalConducta
 // What the closed form of sets of one plan takes for the derivatives by the bias and by kT, and for a shift.
 struct ShiftedAverages {
     EnergyPlan plan;
-    ShiftWeight weight;
+    ShiftOfAll all;
+    ShiftOfLevels levels;
     struct Shifted {
         std::vector<double> bias;
         double kT;
@@ -72,7 +84,7 @@ struct ShiftedAverages {
     };
     Shifted to[THROUGH_KERNEL][2];
 
-    ShiftedAverages(const EnergyPlan& of) : plan(of), weight{of.reaches_gap() ? 1 / (of.gap * of.gap) : 0.0} {
+    ShiftedAverages(const EnergyPlan& of) : plan(of), all{of.reaches_gap() ? 1 / (of.gap * of.gap) : 0.0}, levels{all.over_square} {
         for (int by = 0; by < THROUGH_KERNEL; ++by)
             for (int side = 0; side < 2; ++side) {
                 double shift = plan.kT * (side == 0 ? -SHIFT : SHIFT);
@@ -92,11 +104,11 @@ struct ShiftedAverages {
         for (size_t v = 0; v < above.size(); ++v) above[v] = (above[v] - below[v]) / (2 * SHIFT * plan.kT);
         return above;
     }
-    // Return what a shift of all energies with the weight s does.
-    std::vector<double> of_shift(const RationalConductances& of) const {
-        if (!plan.reaches_gap()) return derivatives(of, BY_BIAS);
-        auto slope = detail::times(plan, of, true, [&](Amplitude omega) { return weight.slope(omega); });
-        auto found = derivatives(detail::times(plan, of, false, [&](Amplitude omega) { return weight.at(omega); }), BY_BIAS);
+    // Return what a shift does.
+    template <class Shift>
+    std::vector<double> of_shift(const RationalConductances& of, const Shift& s) const {
+        auto slope = detail::times(plan, of, !Shift::ODD, [&](Amplitude omega) { return s.slope(omega); });
+        auto found = derivatives(detail::times(plan, of, Shift::ODD, [&](Amplitude omega) { return s.at(omega); }), BY_BIAS);
         std::vector<double> by_slope(found.size());
         slope.average(plan.weights, plan.bias, plan.kT, by_slope.data());
         for (size_t v = 0; v < found.size(); ++v) found[v] -= by_slope[v];

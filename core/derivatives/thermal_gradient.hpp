@@ -9,6 +9,10 @@
 // same factor, but for what ω itself does in ω − H − Σ(ω) and in the leads.  With f for that, ∂M = ω + iΓ_d in the wire,
 //
 //     Δ₀ ∂/∂Δ₀ ∫ p K_V dω = ∫ f K_V dω − (V ∂/∂V + kT ∂/∂kT + Γ_d ∂/∂Γ_d) ∫ p K_V dω.
+//
+// Where the path goes on along the axis, next to the gap, levels are narrower than its points are apart.  There, with ω = Δ₀ tanh τ,
+// those of kinetic energy ε have (Δ₀ ± V_Z)γ exp τ = ε², so a change of γ, Δ₀ or V_Z shifts τ of all levels of a spin alike, and ω by
+// a multiple of ω − ω³/Δ₀².  What the path misses of such a shift, the closed form knows, and for each change the multiple is added.
 #pragma once
 
 #include <map>
@@ -37,6 +41,23 @@ private:
     }
 };
 
+// By how much −τ of the levels next to the gap changes with γ, Δ₀ and V_Z, in the mean over the levels of both spins: there are
+// √(Δ₀ ± V_Z) times as many for a unit of τ.
+struct LevelsAtGap {
+    double by_gamma, by_delta0, by_zeeman;
+
+    explicit LevelsAtGap(const detail::GradientField& field) : by_gamma(1 / field.of.gamma) {
+        const double V_Z = field.hop * field.zeeman, most = std::sqrt(field.of.delta0 + std::abs(V_Z));
+        const double least = std::sqrt(std::max(field.of.delta0 - std::abs(V_Z), 0.0));
+        if (least > FEWEST * most) by_delta0 = 1 / (most * least), by_zeeman = (1 / most - 1 / least) / (most + least);
+        else by_delta0 = by_zeeman = 1 / (most * most);
+        if (V_Z < 0) by_zeeman = -by_zeeman;
+    }
+
+private:
+    static constexpr double FEWEST = 0.1;  // levels of the other spin that count, as a share
+};
+
 // Fill out the derivatives of one set, and return how far apart the two of a shift are, in e²/h per kT.
 inline double gradient_of_set(const detail::GradientField& field, const GradientRules& rules, const RationalConductances& model, double mu,
                               std::vector<ContourPoint> points, double* by_V, double* others) {
@@ -46,15 +67,15 @@ inline double gradient_of_set(const detail::GradientField& field, const Gradient
     const Path& path = rules.path;
     size_t sites = field.of.sites, values = size_t(plan.biases) * 4;
     room.sites.resize(sites);
-    room.by_V.assign(sites * values, PointLanes::R(0.0)), room.others.assign((BY_ENERGY + 1) * values, PointLanes::R(0.0));
+    room.by_V.assign(sites * values, PointLanes::R(0.0)), room.others.assign(SUMS * values, PointLanes::R(0.0));
     auto in_lanes = [](size_t from, size_t to, auto use) {
         for (size_t first = from; first < to; first += REGISTER) use(first, int(std::min(to - first, size_t(REGISTER))));
     };
     auto add = [&](size_t first, int count) {
         const ContourPoint* some = &points[first];
         bool absorbed = field.of.dissipation > 0 || some->z.real() > field.of.delta0;  // by levels or the parent
-        if (absorbed) PointsOfSet<WITH_RETURNS>(field, plan, mu, some, count, rules.averages.weight, room).add();
-        else PointsOfSet<PROBABILITIES>(field, plan, mu, some, count, rules.averages.weight, room).add();
+        if (absorbed) PointsOfSet<WITH_RETURNS>(field, rules.averages, mu, some, count, room).add();
+        else PointsOfSet<PROBABILITIES>(field, rules.averages, mu, some, count, room).add();
     };
     in_lanes(0, std::count_if(points.begin(), points.end(), is_at_pole),
              [&](size_t first, int count) { find_exact_poles(field, path, mu, &points[first], count, room); });
@@ -75,12 +96,16 @@ inline double gradient_of_set(const detail::GradientField& field, const Gradient
     for (size_t v = 0; v < values; ++v)
         for (size_t n = 0; n < sites; ++n) by_V[v * sites + n] = 2 / field.hop * total(room.by_V[n * values + v]);
     const auto by_bias = rules.averages.derivatives(model, BY_BIAS), by_kT = rules.averages.derivatives(model, BY_KT);
-    const auto of_shift = rules.averages.of_shift(model);
+    const auto of_all = plan.reaches_gap() ? rules.averages.of_shift(model, rules.averages.all) : by_bias;
+    std::vector<double> missed(values, 0.0);
+    if (plan.reaches_gap()) missed = rules.averages.of_shift(model, rules.averages.levels);
+    const LevelsAtGap levels(field);
     double error = 0.0;
     for (size_t v = 0; v < values; ++v) {
         double* to = others + v * CHANGES;
         to[BY_BIAS] = by_bias[v], to[BY_KT] = by_kT[v];
         for (int change = 0; change <= BY_ENERGY; ++change) to[change] = total(room.others[change * values + v]);
+        if (plan.reaches_gap()) missed[v] -= total(room.others[OF_LEVELS * values + v]);
         double kinetic = 2 * field.of.hopping - mu;
         for (size_t n = 0; n < sites; ++n) {
             to[BY_MU] -= by_V[v * sites + n];
@@ -88,10 +113,14 @@ inline double gradient_of_set(const detail::GradientField& field, const Gradient
         }
         double scaled = to[BY_DELTA0] - field.of.dissipation * to[BY_DISSIPATION];
         to[BY_DELTA0] = (scaled - plan.bias[v / 4] * to[BY_BIAS] - plan.kT * to[BY_KT]) / field.of.delta0;
-        error = largest(error, plan.kT * std::abs(to[BY_ENERGY] - of_shift[v]));
+        to[BY_GAMMA] += levels.by_gamma * missed[v], to[BY_DELTA0] += levels.by_delta0 * missed[v], to[BY_ZEEMAN] += levels.by_zeeman * missed[v];
+        error = largest(error, plan.kT * std::abs(to[BY_ENERGY] - of_all[v]));
     }
     return error;
 }
+
+// Where nodes go up to the gap, derivatives need averages that are better by so much.
+constexpr double TOLERANCE_TO_GAP = 0.4;
 
 // Fill G and error as thermal_conductance does, the derivatives, and their errors, shape (mu, B): infinite, and the
 // derivatives NaN, where a set has no model.
@@ -100,7 +129,8 @@ inline void thermal_gradient(const ThermalGradientGrid& at, double tolerance, do
     const Grid& grid = at.grid;
     const Wire& wire = *grid.wires;
     std::vector<SetModel> models;
-    thermal_conductance(grid, at.kT, tolerance, growth_limit, G, error, energies, stop, &models);
+    const bool reaches_gap = reach_of(grid.omega, grid.omega_count, at.kT, wire.delta0) != Reach::WINDOW;
+    thermal_conductance(grid, at.kT, reaches_gap ? TOLERANCE_TO_GAP * tolerance : tolerance, growth_limit, G, error, energies, stop, &models);
     std::vector<detail::GradientField> fields;
     std::vector<Leads> leads;
     double cubic[CUBIC][CUBIC], energy[CUBIC];

@@ -362,6 +362,18 @@ def test_a_pole_may_be_far_wider_than_the_model_has_it():
     assert_right(wire, mu, B, T, ["mu", "gamma", "V"], share=1e-3)
 
 
+@pytest.mark.parametrize(("seed", "name"), [(11, "gamma"), (24, "gamma"), (15, "delta0")])
+def test_what_samples_next_to_the_gap_miss_is_added(seed, name):
+    """There all levels move alike with these parameters; the samples alone are 1.5 to 2.4e-4 off."""
+    wire, mu, B, T, along = drawn_case(seed, hot=True)
+    by_energies = ("mu", "gamma", "delta0", "bias", "V")
+    found = conductance_gradient(wire, mu, B, BIAS, T, parameters=by_energies)
+    largest = max(abs(slopes_of(found, by)).max() for by in by_energies)
+    slope, error = expected(name, wire, mu, B, T, along)
+    assert error < 1e-5 * largest
+    assert_allclose(slopes_of(found, name), slope, rtol=0, atol=7e-5 * largest)
+
+
 def one_case(seed, broadened=False, hot=False):
     """Return errors of two derivatives, estimates, and whether the differences are better.
 
@@ -408,7 +420,8 @@ def test_ten_thousand_random_derivatives(cases, broadened, hot):
     print("worst, and estimated:", [(f"{shares[k]:.1e}", f"{estimates[k]:.1e}") for k in worst])
     unforeseen = (shares > np.maximum(3 * estimates, 1e-3)).mean()
     if hot:
-        assert (shares < 1e-3).mean() > 0.96
+        assert (shares < 1e-4).mean() > 0.94
+        assert (shares < 1e-3).mean() > 0.98
         assert (shares[trusted] < 2e-2).all()
         assert unforeseen < 0.01
     else:
