@@ -364,7 +364,7 @@ def test_a_pole_may_be_far_wider_than_the_model_has_it():
 
 @pytest.mark.parametrize(("seed", "name"), [(11, "gamma"), (24, "gamma"), (15, "delta0")])
 def test_what_samples_next_to_the_gap_miss_is_added(seed, name):
-    """There all levels move alike with these parameters; the samples alone are 1.5 to 2.4e-4 off."""
+    """There all levels move alike with these parameters; samples alone are 1.5 to 2.4e-4 off."""
     wire, mu, B, T, along = drawn_case(seed, hot=True)
     by_energies = ("mu", "gamma", "delta0", "bias", "V")
     found = conductance_gradient(wire, mu, B, BIAS, T, parameters=by_energies)
