@@ -46,7 +46,7 @@ private:
 struct LevelsAtGap {
     double by_gamma, by_delta0, by_zeeman;
 
-    explicit LevelsAtGap(const detail::GradientField& field) : by_gamma(1 / field.of.gamma) {
+    explicit LevelsAtGap(const detail::GradientField& field) : by_gamma(1 / std::max(field.of.gamma, LEAST_GAMMA * field.of.delta0)) {
         const double V_Z = field.hop * field.zeeman, most = std::sqrt(field.of.delta0 + std::abs(V_Z));
         const double least = std::sqrt(std::max(field.of.delta0 - std::abs(V_Z), 0.0));
         if (least > FEWEST * most) by_delta0 = 1 / (most * least), by_zeeman = (1 / most - 1 / least) / (most + least);
@@ -55,7 +55,8 @@ struct LevelsAtGap {
     }
 
 private:
-    static constexpr double FEWEST = 0.1;  // levels of the other spin that count, as a share
+    static constexpr double FEWEST = 0.1;       // levels of the other spin that count, as a share
+    static constexpr double LEAST_GAMMA = 0.5;  // so much less than Δ₀ at most, or the closed form's own error is made too large
 };
 
 // Fill out the derivatives of one set, and return how far apart the two of a shift are, in e²/h per kT.

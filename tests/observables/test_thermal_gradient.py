@@ -374,6 +374,23 @@ def test_what_samples_next_to_the_gap_miss_is_added(seed, name):
     assert_allclose(slopes_of(found, name), slope, rtol=0, atol=7e-5 * largest)
 
 
+@pytest.mark.parametrize("temperature", [0.05, 0.2])
+def test_a_wire_without_a_parent_has_them(temperature):
+    """What is added of levels next to the gap is not divided by γ, which may be zero."""
+    without, little = (
+        conductance_gradient(
+            replace(random_wire(7, sites=50), gamma=gamma),
+            *(0.2, 0.3, BIAS, temperature),
+            parameters=["gamma", "delta0", "B"],
+        )
+        for gamma in (0.0, 1e-9)
+    )
+    for name in ("gamma", "delta0", "B"):
+        slopes = slopes_of(without, name)
+        smallest = SMALL + 1e-4 * abs(slopes).max()
+        assert_allclose(slopes_of(little, name), slopes, rtol=0, atol=smallest)
+
+
 def one_case(seed, broadened=False, hot=False):
     """Return errors of two derivatives, estimates, and whether the differences are better.
 
