@@ -97,16 +97,17 @@ inline double gradient_of_set(const detail::GradientField& field, const Gradient
     for (size_t v = 0; v < values; ++v)
         for (size_t n = 0; n < sites; ++n) by_V[v * sites + n] = 2 / field.hop * total(room.by_V[n * values + v]);
     const auto by_bias = rules.averages.derivatives(model, BY_BIAS), by_kT = rules.averages.derivatives(model, BY_KT);
-    const auto of_all = plan.reaches_gap() ? rules.averages.of_shift(model, rules.averages.all) : by_bias;
-    std::vector<double> missed(values, 0.0);
-    if (plan.reaches_gap()) missed = rules.averages.of_shift(model, rules.averages.levels);
+    std::vector<double> of_all = by_bias, missed(values, 0.0);
+    if (plan.reaches_gap()) {
+        of_all = rules.averages.of_shift(model, rules.averages.all), missed = rules.averages.of_shift(model, rules.averages.levels);
+        for (size_t v = 0; v < values; ++v) missed[v] -= total(room.others[OF_LEVELS * values + v]);
+    }
     const LevelsAtGap levels(field);
     double error = 0.0;
     for (size_t v = 0; v < values; ++v) {
         double* to = others + v * CHANGES;
         to[BY_BIAS] = by_bias[v], to[BY_KT] = by_kT[v];
         for (int change = 0; change <= BY_ENERGY; ++change) to[change] = total(room.others[change * values + v]);
-        if (plan.reaches_gap()) missed[v] -= total(room.others[OF_LEVELS * values + v]);
         double kinetic = 2 * field.of.hopping - mu;
         for (size_t n = 0; n < sites; ++n) {
             to[BY_MU] -= by_V[v * sites + n];

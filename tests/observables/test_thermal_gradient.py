@@ -84,6 +84,10 @@ def slopes_of(gradient, name):
     return np.stack([point[f"d{G}_d{name}"] for G in CONDUCTANCES], axis=-1)
 
 
+def largest_slope(gradient, names):
+    return max(abs(slopes_of(gradient, name)).max() for name in names)
+
+
 def assert_right(wire, mu, B, temperature, names, share):
     along = np.cos(np.pi * 3 * (np.arange(wire.sites) + 0.5) / wire.sites)
     found = conductance_gradient(wire, mu, B, BIAS, temperature, parameters=names)
@@ -116,7 +120,7 @@ def test_little_broadening_changes_little(B):
     without = conductance_gradient(wire, 0.2, B, BIAS)
     little = conductance_gradient(replace(wire, dissipation=1e-9), 0.2, B, BIAS)
     by_energies = ("mu", "gamma", "delta0", "bias", "V", "barrier_left", "barrier_right")
-    largest = max(abs(slopes_of(without, name)).max() for name in by_energies)
+    largest = largest_slope(without, by_energies)
     share = without.gradient_error.item() + little.gradient_error.item()
     assert share < 0.01
     for name in by_energies:
@@ -368,7 +372,7 @@ def test_what_samples_next_to_the_gap_miss_is_added(seed, name):
     wire, mu, B, T, along = drawn_case(seed, hot=True)
     by_energies = ("mu", "gamma", "delta0", "bias", "V")
     found = conductance_gradient(wire, mu, B, BIAS, T, parameters=by_energies)
-    largest = max(abs(slopes_of(found, by)).max() for by in by_energies)
+    largest = largest_slope(found, by_energies)
     slope, error = expected(name, wire, mu, B, T, along)
     assert error < 1e-5 * largest
     assert_allclose(slopes_of(found, name), slope, rtol=0, atol=7e-5 * largest)
@@ -399,7 +403,7 @@ def one_case(seed, broadened=False, hot=False):
     wire, mu, B, T, along = drawn_case(seed, broadened, hot)
     by_energies = ("mu", "gamma", "delta0", "bias", "V", *(["dissipation"] if broadened else []))
     found = conductance_gradient(wire, mu, B, BIAS, T, parameters=by_energies)
-    largest = max(abs(slopes_of(found, name)).max() for name in by_energies)
+    largest = largest_slope(found, by_energies)
     outcomes = []
     others = ("mu", "gamma", "delta0", "dissipation" if broadened else "bias")
     for name in ("V", others[seed % 4]):
