@@ -13,11 +13,6 @@ UNKNOWNS = unknowns_of(CONFIG)
 SIZE, DATA = len(UNKNOWNS.names), 40
 
 
-@dataclass(frozen=True)
-class Measured:
-    temperature: float = 0.05
-
-
 @dataclass
 class Linear:
     """What the search and importance sampling need of an `Observation`."""
@@ -28,7 +23,6 @@ class Linear:
     unknowns: Unknowns = UNKNOWNS
     variance: np.ndarray = field(default_factory=lambda: np.full(DATA, 0.01**2))
     channel: np.ndarray = field(default_factory=lambda: np.zeros(DATA, dtype=int))
-    measurement: Measured = Measured()
 
     def simulate(self, X):
         Y = X @ self.slope

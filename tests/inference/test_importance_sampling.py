@@ -27,8 +27,7 @@ from disorder_landscape.inference.problem.gaussian import Gaussian, log_density,
 from disorder_landscape.inference.problem.observation import objective
 from disorder_landscape.inference.problem.unknowns import unknowns_of
 from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED, verdict
-from disorder_landscape.model.parameters import BOLTZMANN
-from linear_data import CONFIG, DATA, SIZE, UNKNOWNS, Linear, Measured, posterior
+from linear_data import CONFIG, DATA, SIZE, UNKNOWNS, Linear, posterior
 
 PRIOR = UNKNOWNS.prior
 WIDTH = np.sqrt(np.diag(PRIOR.covariance))
@@ -254,13 +253,15 @@ def test_mixtures_are_fitted_to_samples():
     assert again[0].share == pytest.approx(0.75, abs=0.01)
 
 
-@pytest.mark.parametrize(("kT", "wide"), [(4.2, False), (3.8, True), (0.5, True)])
-def test_answers_wider_than_conductances_are_linear_get_importance_samples(lines, kT, wide):
-    """Which is a quarter of kT, here in units of the bar of an answer that is too narrow."""
+@pytest.mark.parametrize(("straight", "wide"), [(1.05, False), (0.95, True), (0.1, True)])
+def test_answers_wider_than_conductances_are_straight_get_importance_samples(
+    lines, monkeypatch, straight, wide
+):
+    """Here as wide as so many bars of an answer that is too narrow."""
     exact = posterior(lines)
     answer = Gaussian(exact.mean, 0.5 * exact.covariance)
     bar = UNKNOWNS.site_std(answer.covariance)
-    lines = replace(lines, measurement=Measured(temperature=kT * bar / BOLTZMANN))
+    monkeypatch.setattr(samples, "STRAIGHT", straight * bar)
     one = Optimum(answer, lines.simulate(answer.mean[None])[0], 0.0, 0.0, (0, 0))
     optima = [one, replace(one, objective=20.0)]
     found = Outcome(optima, posterior_samples(lines, optima, [0]))
@@ -278,7 +279,7 @@ def test_answers_wider_than_conductances_are_linear_get_importance_samples(lines
 def test_narrow_answers_get_importance_samples_if_much_of_a_device_is_unknown(lines, monkeypatch):
     answer = posterior(lines)
     bar = UNKNOWNS.site_std(answer.covariance)
-    lines = replace(lines, measurement=Measured(temperature=10 * bar / BOLTZMANN))
+    monkeypatch.setattr(samples, "STRAIGHT", bar)
     narrow = Gaussian(answer.mean, answer.covariance / 25)
     one = optimum_at(lines, narrow)
     assert len(UNKNOWNS.parameters) == 1
@@ -292,11 +293,11 @@ def test_many_unknowns_get_none(lines, monkeypatch):
     """… or too few, where there are several optima."""
     exact = posterior(lines)
     narrow = optimum_at(lines, Gaussian(exact.mean, 0.5 * exact.covariance))
-    wide = replace(lines, measurement=Measured(UNKNOWNS.site_std(exact.covariance) / BOLTZMANN))
-    assert posterior_samples(wide, [narrow], [0]) is not None
+    monkeypatch.setattr(samples, "STRAIGHT", 0.25 * UNKNOWNS.site_std(exact.covariance))
+    assert posterior_samples(lines, [narrow], [0]) is not None
     monkeypatch.setattr(samples, "MOST_UNKNOWNS", len(UNKNOWNS.names) - 1)
-    assert posterior_samples(wide, [narrow], [0]) is None
-    found = posterior_samples(wide, [narrow, narrow], [0])
+    assert posterior_samples(lines, [narrow], [0]) is None
+    found = posterior_samples(lines, [narrow, narrow], [0])
     assert len(found.samples) < FIRST_BATCH + 4
     assert not found.is_enough
 

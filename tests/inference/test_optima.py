@@ -7,12 +7,11 @@ import pytest
 
 from disorder_landscape.inference.optimum import Optimum, add
 from disorder_landscape.inference.problem.gaussian import Gaussian
+from disorder_landscape.inference.search import optima as search_optima
 from disorder_landscape.inference.search.gauss_newton import gauss_newton
 from disorder_landscape.inference.search.optima import Optima
-from disorder_landscape.model.parameters import BOLTZMANN
-from linear_data import DATA, SIZE, Linear, Measured, posterior
+from linear_data import DATA, SIZE, Linear, posterior
 
-COLD = Measured(temperature=1e-3)
 AXIS = np.eye(SIZE)[0]
 
 
@@ -28,7 +27,7 @@ class Folds(Linear):
 @pytest.fixture
 def folds():
     slope = np.random.default_rng(2).normal(size=(SIZE, DATA))
-    measured = Folds(np.zeros(DATA), slope, variance=np.ones(DATA), measurement=COLD)
+    measured = Folds(np.zeros(DATA), slope, variance=np.ones(DATA))
     return replace(measured, data=measured.simulate((2 * AXIS)[None])[0])
 
 
@@ -40,7 +39,7 @@ def optima_of(observation):
 
 
 def test_both_signs_are_found_and_counted(folds):
-    """… with as many starts as a posterior needs that is much wider than kT."""
+    """… with as many starts as a posterior needs that is wide."""
     optima = optima_of(folds)
     for side in [1.9, -2.2, 2.1, -1.8, 1.5] * 3:
         optima.start_at(side * AXIS, 0)
@@ -64,9 +63,9 @@ def test_an_optimum_found_once_is_a_sign_of_more(folds):
     assert optima.is_settled
 
 
-def test_a_narrow_posterior_takes_three_starts_that_agree(folds):
-    warm = replace(folds, measurement=Measured(temperature=1.0 / BOLTZMANN))
-    optima = optima_of(warm)
+def test_a_narrow_posterior_takes_three_starts_that_agree(folds, monkeypatch):
+    monkeypatch.setattr(search_optima, "WIDE", 1.0)
+    optima = optima_of(folds)
     settled = []
     for _ in range(3):
         optima.start_at(2 * AXIS, 0)
@@ -74,6 +73,18 @@ def test_a_narrow_posterior_takes_three_starts_that_agree(folds):
     assert settled == [False, False, True]
     assert not optima.is_wide
     assert optima.is_settled
+
+
+def test_several_optima_are_wide_however_narrow_each_is(folds, monkeypatch):
+    monkeypatch.setattr(search_optima, "WIDE", 1.0)
+    optima = optima_of(folds)
+    for side in 3 * [2.0, -2.0]:
+        assert not optima.is_settled
+        optima.start_at(side * AXIS, 0)
+    assert optima.is_wide
+    one, other = optima.found
+    optima.found[1] = replace(other, objective=one.objective + 20)
+    assert not optima.is_wide
 
 
 def test_ends_that_are_near_but_not_as_good_do_not_agree(linear):
@@ -106,7 +117,7 @@ def test_data_that_no_optimum_explains_are_not_settled(linear):
 
 def test_little_noise_takes_two_starts_that_agree(linear):
     """However wide the posterior is for what the data do not tell."""
-    quiet = replace(linear, variance=np.full(DATA, 1e-8), measurement=COLD)
+    quiet = replace(linear, variance=np.full(DATA, 1e-8))
     optima = optima_of(replace(quiet, data=quiet.slope.sum(axis=0)))
     for settled in (False, True):
         optima.start_at(np.zeros(SIZE), 0)

@@ -9,7 +9,7 @@ from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.search.gauss_newton import gauss_newton
 from disorder_landscape.inference.search.optima import STARTS_WHEN_WIDE, Optima
 from disorder_landscape.inference.search.starts import MOST_STARTS, STARTS, Starts
-from linear_data import DATA, SIZE, Linear, Measured, posterior
+from linear_data import DATA, SIZE, Linear, posterior
 
 AXIS = np.eye(SIZE)[0]
 
@@ -96,7 +96,7 @@ def test_starts_go_on_about_the_same_distribution(parts):
             begun.append((attempt, x))
         return gauss_newton(of, x, known=known)
 
-    wide = replace(parts, variance=np.ones(DATA), measurement=Measured(temperature=1e-3))
+    wide = replace(parts, variance=np.ones(DATA))
     starts = starts_of(wide, steps)
     about = Gaussian(np.ones(SIZE), np.eye(SIZE))
     starts.start_about(about, 3, np.random.default_rng(1))

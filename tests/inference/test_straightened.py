@@ -7,12 +7,13 @@ import pytest
 from scipy.stats import norm
 
 from disorder_landscape.inference.optimum import SAME_ANSWER, optimum_at, same_answer
+from disorder_landscape.inference.posterior import samples
 from disorder_landscape.inference.posterior.importance_sampling import Part, importance_sampling
 from disorder_landscape.inference.posterior.samples import posterior_samples
 from disorder_landscape.inference.problem.distributions import Uniform
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.straightened import Straightened
-from linear_data import DATA, SIZE, UNKNOWNS, Linear, Measured
+from linear_data import DATA, SIZE, UNKNOWNS, Linear
 
 UNIFORM = SIZE - 1
 """α, the only uniform unknown."""
@@ -36,7 +37,7 @@ def ridge(total):
     slope[UNIFORM] = slope[MEAN]
     truth = np.zeros(SIZE)
     truth[MEAN], truth[UNIFORM] = total, 0.0
-    one = Ridge(truth @ slope, slope, measurement=Measured(temperature=1e-6))
+    one = Ridge(truth @ slope, slope)
     x = np.zeros(SIZE)
     x[MEAN] = total / 2
     x[UNIFORM] = WHOLE.white_noise(x + (total / 2) * np.eye(SIZE)[UNIFORM])[UNIFORM]
@@ -85,10 +86,10 @@ def test_the_evidence_is_that_of_the_exact_posterior():
     assert found.log_mean_weight == pytest.approx(exact, abs=0.3)
 
 
-def test_a_ridge_is_no_normal_distribution_however_well_v_is_known():
-    """Here kT is so large that nothing else would ask for samples."""
+def test_a_ridge_is_no_normal_distribution_however_well_v_is_known(monkeypatch):
+    """Here nothing else would ask for samples."""
     observation, optimum = ridge(0.5)
-    observation.measurement = Measured(temperature=100.0)
+    monkeypatch.setattr(samples, "STRAIGHT", np.inf)
     assert posterior_samples(observation, [optimum], [0]) is not None
 
 

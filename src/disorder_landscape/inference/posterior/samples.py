@@ -20,15 +20,12 @@ from disorder_landscape.inference.problem.gaussian import Gaussian, log_density
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.problem.straightened import Straightened
 from disorder_landscape.inference.stages import Report, no_report
-from disorder_landscape.model.parameters import BOLTZMANN, FloatArray
+from disorder_landscape.model.parameters import FloatArray
 
-STRAIGHT = 0.25
+STRAIGHT = 1.08e-3
 """Whether the posterior is a normal distribution is asked if several parameters of the device are
-unknown, or the error bar of V is more than this many kT, or …"""
-LEAST_WIDTH = 1e-3
-"""… this in meV, about the width of levels. Conductances are peaks of about that width. By
-Mahalanobis distances of the truth, Laplace's error bars are right below that width and often too
-small above it."""
+unknown, or the error bar of V is more than this in meV, about the width of levels. By Mahalanobis
+distances of the truth, Laplace's error bars are right below that and often too small above it."""
 NORMAL, LEAST_NORMAL = 0.97, 0.3
 """… The posterior is taken for Laplace's approximation if samples of the latter, weighted by the
 exact posterior, are effective to a share of at least NORMALⁿ, and never less than LEAST_NORMAL:
@@ -59,10 +56,9 @@ def posterior_samples(
         return None
     share = shares(optima)
     counts = [k for k in range(len(optima)) if share[k] > NEGLIGIBLE]
-    width = max(STRAIGHT * BOLTZMANN * observation.measurement.temperature, LEAST_WIDTH)
     straightened = Straightened.about(chosen.answer, unknowns)
     may_be_normal = len(counts) == 1 and not straightened.parameters
-    is_sharp = unknowns.site_std(chosen.answer.covariance) < width
+    is_sharp = unknowns.site_std(chosen.answer.covariance) < STRAIGHT
     is_narrow = is_sharp and not unknowns.has_several_parameters
     if may_be_normal and (is_narrow or has_many):
         return None

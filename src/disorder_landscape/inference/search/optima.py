@@ -26,15 +26,17 @@ from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.search.gauss_newton import Goal
 from disorder_landscape.inference.verdict import UNSEEN, is_surely_right
-from disorder_landscape.model.parameters import BOLTZMANN, FloatArray
+from disorder_landscape.model.parameters import FloatArray
 
 AGREEING = 2, 3
 """How many starts must lead to the best optimum: where the noise is so small that an answer that
 fits is right all but surely, and otherwise. (Of thirteen such wires without noise, one start ended
 4 µeV off and fitted.)"""
-WIDE = 1.0
+WIDE = 4.3e-3
 """The posterior may have several maxima if the noise may hide them and V is uncertain by more than
-this many kT. …"""
+this in meV, at any temperature: conductances are as straight across it at 300 mK as at 50. …"""
+SEVERAL = 0.1
+"""… So may it if optima beside the best one hold more than this share of it. …"""
 STARTS_WHEN_WIDE = 16, 64
 """… Then there are at least, and at most, so many starts. (Of nineteen wires of ten components at
 0.1 e²/h eleven converge with 32 starts and ten iterations of importance sampling, and sixteen with
@@ -74,7 +76,8 @@ class Optima:
         if not self.fits or is_surely_right(self.observation):
             return False
         bar = self.observation.unknowns.site_std(best(self.found).answer.covariance)
-        return bar > WIDE * BOLTZMANN * self.observation.measurement.temperature
+        beside = 1 - shares(self.found)[self.found.index(best(self.found))]
+        return bar > WIDE or bool(beside > SEVERAL)
 
     @property
     def is_settled(self) -> bool:
