@@ -62,7 +62,7 @@ def posterior_samples(
     is_narrow = is_sharp and not unknowns.has_several_parameters
     if may_be_normal and (is_narrow or has_many):
         return None
-    mixture = [Part(optima[k].answer, float(share[k])) for k in counts]
+    mixture = _mixture([optima[k] for k in counts], share[counts])
     needed = max(NORMAL ** len(unknowns.names), LEAST_NORMAL)
     batches = importance_sampling(observation, mixture, seed, cache, progress, straightened)
     for number, found in enumerate(batches):
@@ -84,9 +84,12 @@ def posterior_shares(
     if found is None:
         return share
     straightened = Straightened.about(best(optima).answer, observation.unknowns)
-    mixture = [Part(one.answer, float(part)) for one, part in zip(optima, share, strict=True)]
-    X = straightened.of_white_noise(found.samples)
-    return responsibilities(in_straight_variables(mixture, straightened), X) @ found.weight
+    mixture = in_straight_variables(_mixture(optima, share), straightened)
+    return responsibilities(mixture, straightened.of_white_noise(found.samples)) @ found.weight
+
+
+def _mixture(optima: Sequence[Optimum], share: FloatArray) -> list[Part]:
+    return [Part(one.answer, float(part)) for one, part in zip(optima, share, strict=True)]
 
 
 def normality(found: ImportanceSamples, answer: Gaussian) -> float:
