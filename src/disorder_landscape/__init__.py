@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from disorder_landscape.inference.infer import infer
     from disorder_landscape.inference.problem.distributions import Normal
     from disorder_landscape.inference.problem.prior import Prior
+    from disorder_landscape.inference.problem.series_resistance import without_series_resistance
     from disorder_landscape.inference.verify import verify
     from disorder_landscape.learning.differentiable import differentiable_conductance
     from disorder_landscape.learning.prediction import predict
@@ -40,6 +41,7 @@ __all__ = [
     "predict",
     "topological_visibility",
     "verify",
+    "without_series_resistance",
 ]
 
 
@@ -65,4 +67,10 @@ def __getattr__(name: str) -> Any:
         from disorder_landscape.inference.verify import verify
 
         return verify
+    if name == "without_series_resistance":
+        with needs("inference"):
+            from disorder_landscape.inference.problem.series_resistance import (
+                without_series_resistance,
+            )
+        return without_series_resistance
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

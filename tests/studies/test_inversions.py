@@ -7,9 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-from hypothesis.extra.numpy import arrays
 from scipy.stats import chi2
 
 from disorder_landscape import ArgumentError
@@ -35,7 +32,7 @@ from disorder_landscape.inference.invert import usable_network_features
 from disorder_landscape.inference.optimum import optimum_at
 from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.problem.gaussian import Gaussian
-from disorder_landscape.inference.problem.measurement import QUANTUM, empty_measurement, simulated
+from disorder_landscape.inference.problem.measurement import empty_measurement, simulated
 from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED
 from disorder_landscape.model.parameters import Nanowire
 from disorder_landscape.studies import inversions, runner, unmodelled
@@ -58,7 +55,6 @@ from disorder_landscape.studies.unmodelled import (
     MODEL_ALONE,
     NOTHING,
     changed,
-    in_series,
     true_conductances,
     true_noise,
     unmodelled_row,
@@ -258,18 +254,6 @@ def test_the_table_of_what_the_model_lacks_counts_both_checks(tmp_path):
     assert nothing.startswith("| the model alone |")
     assert wide.startswith("| `wide.toml` | Δ₀ 20 % smaller, or larger | 1 |")
     assert gap.endswith("| 5 | 2 | 1e+02, 1e+02 | 4 | 2, 3 | 1 | 0, 0 |")
-
-
-@given(arrays(float, (3, 4), elements=st.floats(0, 2)), st.floats(0, 5e3), st.floats(0, 5e3))
-def test_resistances_in_series_add_up(G, first, second):
-    one_after_the_other = in_series(second, in_series(first, G))
-    np.testing.assert_allclose(one_after_the_other, in_series(first + second, G), atol=1e-12)
-
-
-def test_a_lead_without_the_other_is_in_series_with_its_resistance():
-    G = np.array([0.5, 2.0, 0.0, 0.0])
-    behind = in_series(1 / QUANTUM, G)
-    np.testing.assert_allclose(behind, [1 / (1 / 0.5 + 1), 1 / (1 / 2.0 + 1), 0, 0])
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -15,9 +15,9 @@ from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.dataset.hdf5 import open_hdf5
 from disorder_landscape.dataset.store import read_dataset, write_dataset
 from disorder_landscape.files import check_writable
-from disorder_landscape.inference.infer import PAPERS_SETTINGS, infer
+from disorder_landscape.inference.infer import infer
 from disorder_landscape.inference.plot import plot_inference
-from disorder_landscape.inference.problem.measurement import measurement_of
+from disorder_landscape.inference.problem.measurement import PAPERS_SETTINGS, measurement_of
 from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.stages import Progress, silent
 from disorder_landscape.learning.model import CONFIG, NETWORK, SCALER

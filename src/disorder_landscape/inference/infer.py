@@ -28,7 +28,11 @@ from disorder_landscape.inference.invert import (
     usual_settings,
 )
 from disorder_landscape.inference.optimum import chi_square_excess
-from disorder_landscape.inference.problem.measurement import measurement_of, settings_of
+from disorder_landscape.inference.problem.measurement import (
+    PAPERS_SETTINGS,
+    measurement_of,
+    settings_of,
+)
 from disorder_landscape.inference.problem.observation import (
     Observation,
     noise_of_channels,
@@ -55,12 +59,9 @@ from disorder_landscape.learning.model import (
     load_model,
     load_model_config,
 )
-from disorder_landscape.model.parameters import TEMPERATURE, Nanowire
 
 SAMPLES = 64
-PAPERS_SETTINGS = {"theta": 0.0, "barrier": Nanowire.barrier, "temperature": TEMPERATURE}
-"""Where neither the prior nor the measurement says anything."""
-SEARCH = 7
+SEARCH = 8
 """Number of the search's version. What an interrupted run of another one has found is of no use."""
 Model = str | Path | TrainedModel
 

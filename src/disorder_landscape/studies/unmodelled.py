@@ -18,12 +18,12 @@ import numpy as np
 from disorder_landscape.config import Positive
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.inference.problem.measurement import (
-    QUANTUM,
     Measurement,
     empty_measurement,
     simulated,
 )
 from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
+from disorder_landscape.inference.problem.series_resistance import in_series
 from disorder_landscape.inference.problem.unknowns import Unknowns, unknowns_of
 from disorder_landscape.inference.verification.predictive import predictive_p
 from disorder_landscape.model.parameters import FloatArray, Nanowire
@@ -171,24 +171,12 @@ def true_conductances(task: Task, wire: Nanowire, settings: Measurement) -> Floa
     """Return what there is to measure, shape (mu, B, bias, channel), in e²/h."""
     G = simulated(*changed(task.kind, task.index, wire, settings))
     if task.kind == "resistance":
-        return in_series(RESISTANCE, G)
+        return in_series((RESISTANCE, RESISTANCE), G)
     if task.kind == "jump":
         later = slice(settings.B.size // 2, None)
         shifted = replace(settings, mu=settings.mu + JUMP, B=settings.B[later])
         G[:, later] = simulated(wire, shifted)
     return G
-
-
-def in_series(resistance: float, G: FloatArray) -> FloatArray:
-    """Return conductances (…, channel) in e²/h with a resistance in Ω between each lead and wire.
-
-    Of the changes of the voltages a part drops there, δI = M (δV − R δI). Currents flow into the
-    wire, so that the nonlocal conductances stand in M with a minus. The voltages themselves stay.
-    """
-    LL, RR, LR, RL = np.moveaxis(G, -1, 0)
-    M = np.stack([np.stack([LL, -LR], axis=-1), np.stack([-RL, RR], axis=-1)], axis=-2)
-    M = np.linalg.solve(np.eye(2) + resistance * QUANTUM * M, M)
-    return np.stack([M[..., 0, 0], M[..., 1, 1], -M[..., 0, 1], -M[..., 1, 0]], axis=-1)
 
 
 def true_noise(task: Task) -> float:

@@ -15,6 +15,7 @@ from disorder_landscape.config import DatasetConfig
 from disorder_landscape.model.hamiltonian import FULL_TURN
 from disorder_landscape.model.parameters import (
     PARAMETER_RANGES,
+    TEMPERATURE,
     FloatArray,
     Nanowire,
     checked_temperature,
@@ -40,6 +41,8 @@ AXIS_UNITS = {"mu": ("meV",), "B": ("T", "tesla"), "bias": ("meV", "mV")}
 IN_QUANTA = f"be in e²/h, which is {QUANTUM:.4g} S, by which conductances in S are divided"
 SETTINGS = ("theta", "barrier", "temperature")
 """Attributes that a measurement must have: in radians, in meV (left, right), in K."""
+PAPERS_SETTINGS = {"theta": 0.0, "barrier": Nanowire.barrier, "temperature": TEMPERATURE}
+"""Where neither the prior nor the measurement says anything."""
 
 
 @dataclass(frozen=True, eq=False)
