@@ -646,6 +646,13 @@ FOUND = {
     "conductances of texts": lambda: dl.predict(MODEL, MEASURED.astype("U5")),
     "conductances of words": lambda: dl.predict(MODEL, xr.full_like(MEASURED.astype("U5"), "a")),
     "complex conductances": lambda: dl.predict(MODEL, MEASURED + 1j),
+    # series resistance
+    "no resistance": lambda: dl.without_series_resistance(MEASURED, None, 0.0),
+    "resistances of texts": lambda: dl.without_series_resistance(MEASURED, "much", "little"),
+    "resistances of a measurement of words": lambda: dl.without_series_resistance(
+        xr.full_like(MEASURED.astype("U5"), "a"), 1.0, 1.0
+    ),
+    "resistances of no measurement": lambda: dl.without_series_resistance(None, 1.0, 1.0),
     # infer and verify
     "channels of fewer dims": lambda: infer(measured(G_LL=MEASURED["G_LL"].isel(mu=0, drop=True))),
     "axis that has no order": lambda: infer(measured(bias=np.array([None, 1], dtype=object))),

@@ -100,7 +100,7 @@ calls = [
     lambda: dl.infer,
     lambda: dl.predict,
 ]
-dl.verify  # needs none
+dl.verify, dl.without_series_resistance  # need none
 for call in calls:
     try:
         call()

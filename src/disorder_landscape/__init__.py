@@ -68,9 +68,7 @@ def __getattr__(name: str) -> Any:
 
         return verify
     if name == "without_series_resistance":
-        with needs("inference"):
-            from disorder_landscape.inference.problem.series_resistance import (
-                without_series_resistance,
-            )
+        from disorder_landscape.inference.problem.series_resistance import without_series_resistance
+
         return without_series_resistance
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
