@@ -8,10 +8,9 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 import disorder_landscape as dl
-from disorder_landscape.inference.file import PAPERS_SETTINGS
 from disorder_landscape.inference.page import page
 from disorder_landscape.inference.plot import plot_inference, sure_gap
-from disorder_landscape.inference.problem.measurement import measurement_of
+from disorder_landscape.inference.problem.measurement import PAPERS_SETTINGS, measurement_of
 from disorder_landscape.inference.report import sentences_on, topological_sentence, verdict_sentence
 from disorder_landscape.inference.verdict import NOT_CONVERGED, NOT_DESCRIBED
 from disorder_landscape.model.quantities import CONDUCTANCES

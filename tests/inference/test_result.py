@@ -1,5 +1,7 @@
 """What is told of a posterior: evidence, what is left open, gaps, and devices with a gate."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -145,3 +147,14 @@ def test_a_device_is_verified_at_other_settings(device, inferred):
     found = dl.verify(inferred, further, NOISE, controls=19, shifts=[0.0])
     assert float(found["mismatch"].max()) < 0.02
     assert found.attrs["verdict"].startswith("The prediction passes: ")
+
+
+@pytest.mark.parametrize("dissipation", [0.001, (0.0, 0.002)])
+def test_maps_are_those_of_the_wire_without_its_dissipation(dissipation):
+    """… known or not, since otherwise there is no det r = ±1."""
+    wire = dl.Nanowire(np.zeros(50), dissipation=0.001)
+    G = dl.conductance(wire, [0.1, 0.3, 0.5], [0.0, 0.4, 0.8], [-0.03, 0.0, 0.03]).drop_attrs()
+    found = dl.infer(G, dl.Prior(1, 50, dissipation=dissipation), NOISE, samples=8)
+    closed = replace(mean_wire(found), dissipation=0.0, parent_dissipation=None)
+    T_IV = dl.topological_visibility(closed, found["map_mu"], found["map_B"])
+    assert_allclose(found["T_IV"], T_IV, atol=1e-9)

@@ -144,16 +144,23 @@ def left_open(unknowns: Unknowns, covariance: FloatArray) -> dict[str, str]:
     return {"not_fixed": ", ".join(not_fixed), "not_told_apart": ", ".join(pairs)}
 
 
-def _devices(observation: Observation, X: FloatArray, mu: FloatArray) -> list[Device]:
-    """Return the devices of samples at other values of the measured axis."""
-    return observation.unknowns.devices(X, replace(observation.measurement, mu=mu))
+def _closed_devices(observation: Observation, X: FloatArray, mu: FloatArray) -> list[Device]:
+    """Return the devices of samples at other values of the measured axis, without dissipation.
+
+    Only such wires have T_IV and levels.
+    """
+    devices = observation.unknowns.devices(X, replace(observation.measurement, mu=mu))
+    return [
+        one._replace(wire=replace(one.wire, dissipation=0.0, parent_dissipation=0.0))
+        for one in devices
+    ]
 
 
 def _visibility(
     observation: Observation, X: FloatArray, maps: tuple[FloatArray, FloatArray]
 ) -> FloatArray:
     """Return T_IV of samples on a grid of the measured axis and B, shape (sample, lead, mu, B)."""
-    devices, theta = _devices(observation, X, maps[0]), observation.measurement.theta
+    devices, theta = _closed_devices(observation, X, maps[0]), observation.measurement.theta
     if share_settings(devices):
         wires, mu = [device.wire for device in devices], devices[0].setup.mu
         return topological_visibility(wires, mu, maps[1], theta=theta).to_numpy()
@@ -174,10 +181,9 @@ def _gap_probability(observation: Observation, X: FloatArray, gaps: FloatArray) 
     m = observation.measurement
     above = np.zeros((gaps.size, m.mu.size, m.B.size))
     visibility = _visibility(observation, X, (m.mu, m.B))[:, 0]
-    for device, T_IV in zip(_devices(observation, X, m.mu), visibility, strict=True):
-        closed = replace(device.wire, dissipation=0.0, parent_dissipation=0.0)
-        levels = routes.levels([closed], device.setup.mu, m.B, 2, m.theta)[0]
-        levels = np.where(np.isnan(levels), closed.delta0, levels)
+    for device, T_IV in zip(_closed_devices(observation, X, m.mu), visibility, strict=True):
+        levels = routes.levels([device.wire], device.setup.mu, m.B, 2, m.theta)[0]
+        levels = np.where(np.isnan(levels), device.wire.delta0, levels)
         excitation = np.where(T_IV < 0, levels[..., 1], levels[..., 0])
         above += excitation > gaps[:, None, None]
     return above / len(X)
