@@ -180,16 +180,19 @@ def test_verify_reads_what_simulate_writes(verification, tmp_path):
     assert verified.attrs["command"].startswith("landscape verify prediction.nc")
 
 
-def test_verify_writes_what_few_samples_of_an_inversion_come_to(verification):
+@pytest.mark.parametrize("alpha", [(1, 20), 8.0])
+def test_verify_writes_what_few_samples_of_an_inversion_come_to(verification, alpha):
+    """… of which α was unknown, or not, so that it is an attribute."""
     one = xr.load_dataset("prediction.nc", engine="h5netcdf")
     found = one.assign(
-        potential=one["potential"].expand_dims(sample=3),
-        potential_mean=one["potential"],
-        alpha=one["alpha"].expand_dims(sample=3),
-        alpha_mean=one["alpha"],
-    ).assign_attrs(
-        prior=json.dumps(Prior(one.sizes["component"], one.sizes["site"], alpha=(1, 20)).to_dict())
+        potential=one["potential"].expand_dims(sample=3), potential_mean=one["potential"]
     )
+    if alpha == 8.0:
+        found = found.drop_vars("alpha")
+    else:
+        found["alpha"], found["alpha_mean"] = one["alpha"].expand_dims(sample=3), one["alpha"]
+    prior = Prior(one.sizes["component"], one.sizes["site"], alpha=alpha)
+    found = found.assign_attrs(alpha=8.0, prior=json.dumps(prior.to_dict()))
     found.to_netcdf("inferred.nc", engine="h5netcdf")
     code, out, err = verification("inferred.nc", "other.nc", "--controls", 19, "-o", "verified.nc")
     assert code == 0, err

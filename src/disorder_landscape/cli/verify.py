@@ -65,7 +65,7 @@ def verify(
         must = "be another file than those that are read"
         require(output.resolve() not in read, "output", must, f"it is '{output}'")
     config = None if model is None else load_model_config(model).dataset
-    predicted = read_dataset(prediction, ("potential", "alpha"))
+    predicted = read_dataset(prediction, ("potential",))
     measured = [read_dataset(path, CONDUCTANCES) for path in measurements]
     tried = parse_grid("shifts", shifts)
     errors = None if noise is None else parse_noise(noise)
