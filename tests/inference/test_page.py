@@ -9,7 +9,8 @@ from matplotlib.figure import Figure
 
 import disorder_landscape as dl
 from disorder_landscape.inference.page import page
-from disorder_landscape.inference.plot import plot_inference, sure_gap
+from disorder_landscape.inference.plot import plot_inference
+from disorder_landscape.inference.plot_maps import sure_gap
 from disorder_landscape.inference.problem.measurement import PAPERS_SETTINGS, measurement_of
 from disorder_landscape.inference.report import sentences_on, topological_sentence, verdict_sentence
 from disorder_landscape.inference.verdict import NOT_CONVERGED, NOT_DESCRIBED
