@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 import disorder_landscape as dl
 from disorder_landscape.inference.page import page
 from disorder_landscape.inference.plot import plot_inference
-from disorder_landscape.inference.plot_maps import sure_gap
+from disorder_landscape.inference.plot_maps import draw_conductances, draw_maps, sure_gap
 from disorder_landscape.inference.problem.measurement import PAPERS_SETTINGS, measurement_of
 from disorder_landscape.inference.report import sentences_on, topological_sentence, verdict_sentence
 from disorder_landscape.inference.verdict import NOT_CONVERGED, NOT_DESCRIBED
@@ -95,6 +95,42 @@ def test_a_bias_without_data_is_not_drawn(result, measured, tmp_path):
     path = tmp_path / "drawn.svg"
     plot_inference(result, measurement_of(gaps, PAPERS_SETTINGS, complete=False), path)
     assert "-0.03 meV" in path.read_text().replace("\N{MINUS SIGN}", "-")
+
+
+ONE_GATE, ONE_FIELD = {"gate": [2], "map_gate": [2]}, {"B": [2], "map_B": [2]}
+ONE_BIAS = {"bias": [1]}
+
+
+@pytest.mark.parametrize(
+    ("at", "axes", "title", "maps"),
+    [
+        ({}, ("gate", "$B$ [T]"), "at bias = 0 meV", 6),
+        (ONE_GATE, ("bias [meV]", "$B$ [T]"), "at gate = 0.6", 3),
+        (ONE_FIELD, ("bias [meV]", "gate"), "at $B$ = 0.4 T", 3),
+        (ONE_GATE | ONE_BIAS, ("$e^2/h$", "$B$ [T]"), "at bias = 0 meV", 0),
+        (ONE_FIELD | ONE_BIAS, ("$e^2/h$", "gate"), "at bias = 0 meV", 0),
+        (ONE_GATE | ONE_FIELD, ("$e^2/h$", "bias [meV]"), "at gate = 0.6", 0),
+        (ONE_GATE | ONE_FIELD | ONE_BIAS, ("$e^2/h$", "gate"), "at bias = 0 meV", 0),
+    ],
+)
+def test_maps_are_over_the_axes_of_more_than_one_value(result, measured, at, axes, title, maps):
+    """… or curves, where there is one such axis."""
+    of_data = {axis: where for axis, where in at.items() if not axis.startswith("map_")}
+    figure = Figure()
+    panels = dict(
+        zip(
+            ("measured", "explained", "residual", "T", "P", "gap"),
+            figure.subplots(2, 3).ravel(),
+            strict=True,
+        )
+    )
+    shown = measurement_of(measured.isel(of_data), PAPERS_SETTINGS, complete=False)
+    draw_conductances(figure, panels, result.isel(at), shown)
+    draw_maps(figure, panels, result.isel(at), shown)
+    assert (panels["measured"].get_ylabel(), panels["measured"].get_xlabel()) == axes
+    assert title in panels["measured"].get_title()
+    assert sum(bool(panel.collections) for panel in panels.values()) == maps
+    assert panels["P"].lines[-1].get_xdata().size == shown.mu.size * shown.B.size
 
 
 def test_the_sure_gap_is_what_nineteen_of_twenty_samples_exceed():

@@ -145,7 +145,8 @@ def _parameters(panel: Any, result: xr.Dataset, unknown: Mapping[str, Distributi
         mean, std = ((result[name + end].item() - low) / (high - low) for end in ("_mean", "_std"))
         std += low / (high - low)
         panel.barh(row, 1.0, 0.5, color="0.85", lw=0)
-        panel.errorbar(mean, row, xerr=std, fmt="k.", capsize=2, lw=0.8)
+        bar = [[min(std, mean)], [min(std, 1 - mean)]]  # not beyond what it may be
+        panel.errorbar(mean, row, xerr=np.maximum(bar, 0), fmt="k.", capsize=2, lw=0.8)
         panel.text(1.02, row, parameter_with_std(result, name), va="center")
         panel.text(-0.02, row, f"{name}, before: {prior_as_text(belief)}", va="center", ha="right")
     panel.set(xlim=(-0.75, 1.65), ylim=(len(unknown) - 0.4, -0.6))

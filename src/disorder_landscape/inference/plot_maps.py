@@ -16,16 +16,16 @@ from disorder_landscape.model.quantities import CONDUCTANCES
 
 RESIDUAL = {"cmap": "RdBu_r", "vmin": -4, "vmax": 4}
 """How residuals are shown, in standard deviations of all errors, the simulation's included."""
-APART = np.array([-0.25, 0.25])
-"""Where the pixels of a map are that has one value of µ or B alone."""
-AXIS = {"mu": r"$\mu$ [meV]"}
-"""How the measured axis is named on a map; others have their own name."""
+BELOW = -0.03
+"""Where the data's points are beside a curve of P(topological)."""
+SYMBOLS = {"mu": (r"$\mu$", "meV"), "B": ("$B$", "T"), "bias": ("bias", "meV")}
+"""How axes are named, and their units; others have their own name."""
 
 
 class Shown(NamedTuple):
-    """A map: its values on a grid of the measured axis and B, its words, and how it is drawn."""
+    """A map: its axes by name, the upward one first, its values, its words, and how it is drawn."""
 
-    grid: tuple[FloatArray, FloatArray]
+    grid: Mapping[str, FloatArray]
     values: Any
     title: str
     unit: str
@@ -35,59 +35,104 @@ class Shown(NamedTuple):
 def draw_conductances(
     figure: Any, panels: Mapping[str, Any], result: xr.Dataset, measurement: Measurement
 ) -> None:
-    """Show the first channel that was measured, at the bias next to zero."""
-    there, bias = np.isfinite(measurement.G).any(axis=(0, 1, 2)), measurement.bias
-    channel = int(there.argmax())
-    bias_there = np.isfinite(measurement.G[..., channel]).any(axis=(0, 1))
-    name, at = CONDUCTANCES[channel], int(np.where(bias_there, abs(bias), np.inf).argmin())
-    G = np.ma.masked_invalid(measurement.G[:, :, at, channel])
-    answer = result[name].to_numpy()[:, :, at]
+    """Show the first channel that was measured, at the bias next to zero.
+
+    Over B and bias where there is one µ only, and over µ and bias where there is one B.
+    """
+    channel = int(np.isfinite(measurement.G).any(axis=(0, 1, 2)).argmax())
+    name = CONDUCTANCES[channel]
+    axes = {measurement.axis: measurement.mu, "B": measurement.B, "bias": measurement.bias}
+    measured = xr.DataArray(measurement.G[..., channel], axes, list(axes))
+    upward, along, other = _shown_axes(axes)
+    at = _nearest_to_zero(measured, other)
+    grid = {upward: axes[upward], along: axes[along]}
+    G, answer = (
+        of.isel({other: at}).transpose(*grid).to_numpy() for of in (measured, result[name])
+    )
+    G = np.ma.masked_invalid(G)
     largest = max(abs(G).max(), abs(answer).max())
     local = name in ("G_LL", "G_RR")
     norm = {"vmin": 0 if local else -largest, "vmax": largest}
     norm["cmap"] = "viridis" if local else "RdBu_r"
     std = np.sqrt(errors_variance(result.attrs["noise"][channel]))
-    grid = measurement.mu, measurement.B
-    channel_name = rf"$G_\mathrm{{{name[2:]}}}$ at {bias[at]:g} meV"
+    symbol, unit = SYMBOLS.get(other, (other, ""))
+    value = f"{symbol} = {axes[other][at]:g} {unit}".strip()
     off, all_errors = (G - answer) / std, r"$\sigma$ of all errors"
+    title = rf"$G_\mathrm{{{name[2:]}}}$ at {value}, measured"
     shown = {
-        "measured": Shown(grid, G, f"{channel_name}, measured", "$e^2/h$", norm),
+        "measured": Shown(grid, G, title, "$e^2/h$", norm),
         "explained": Shown(grid, answer, "explained", "$e^2/h$", norm),
         "residual": Shown(grid, off, "measured minus explained", all_errors, RESIDUAL),
     }
-    _row_of_maps(figure, panels, shown, measurement.axis)
+    _row_of_maps(figure, panels, shown)
+
+
+def _shown_axes(axes: Mapping[str, FloatArray]) -> tuple[str, str, str]:
+    """Return the names of the upward axis, of that along, and of the one of which one value is."""
+    first, B, bias = axes
+    if axes[bias].size > 1 and axes[first].size == 1:
+        return bias, B, first
+    if axes[bias].size > 1 and axes[B].size == 1:
+        return bias, first, B
+    return first, B, bias
+
+
+def _nearest_to_zero(measured: xr.DataArray, axis: str) -> int:
+    """Return where along an axis something was measured, as near to zero as possible."""
+    others = [name for name in measured.dims if name != axis]
+    there = measured.notnull().any(others).to_numpy()
+    return int(np.where(there, abs(measured[axis].to_numpy()), np.inf).argmin())
 
 
 def draw_maps(
     figure: Any, panels: Mapping[str, Any], result: xr.Dataset, measurement: Measurement
 ) -> None:
     """Show T_IV, P(topological) with the points of the data, and the gap that is sure."""
-    fine = result[f"map_{measurement.axis}"].to_numpy(), result["map_B"].to_numpy()
-    data, gap = (measurement.mu, measurement.B), 1e3 * sure_gap(result)
+    axis, gap = measurement.axis, 1e3 * sure_gap(result)
+    fine = {axis: result[f"map_{axis}"].to_numpy(), "B": result["map_B"].to_numpy()}
+    data = {axis: measurement.mu, "B": measurement.B}
     most = gap.max() or 1e3 * float(result["gap"].max())
     in_T, in_P = {"cmap": "RdBu", "vmin": -1, "vmax": 1}, {"cmap": "Purples", "vmin": 0, "vmax": 1}
     in_gap = {"cmap": "cividis", "vmin": 0, "vmax": most}
-    P, exceed = result["P_topological"], f"gap that {100 * SURE:.0f} % exceed"
+    P, exceed = result["P_topological"].to_numpy(), f"gap that {100 * SURE:.0f} % exceed"
+    T_IV = result["T_IV"][0].to_numpy()
     shown = {
-        "T": Shown(fine, result["T_IV"][0], r"$T_\mathrm{IV}$ of the mean", "", in_T),
+        "T": Shown(fine, T_IV, r"$T_\mathrm{IV}$ of the mean", "", in_T),
         "P": Shown(fine, P, "$P$(topological); dots: data", "", in_P),
         "gap": Shown(data, gap, exceed, "µeV", in_gap),
     }
-    _row_of_maps(figure, panels, shown, measurement.axis)
-    at_B, at_mu = np.meshgrid(measurement.B, measurement.mu)
-    panels["P"].plot(at_B.ravel(), at_mu.ravel(), ".", color="0.4", ms=0.6)
+    _row_of_maps(figure, panels, shown)
+    along, upward = np.meshgrid(measurement.B, measurement.mu)
+    if measurement.mu.size == 1:
+        upward = np.full_like(upward, BELOW)
+    elif measurement.B.size == 1:
+        along, upward = upward, np.full_like(along, BELOW)
+    panels["P"].plot(along.ravel(), upward.ravel(), ".", color="0.4", ms=0.6)
 
 
-def _row_of_maps(
-    figure: Any, panels: Mapping[str, Any], shown: Mapping[str, Shown], axis: str
-) -> None:
-    """Draw maps side by side, with the measured axis named on the left."""
+def _row_of_maps(figure: Any, panels: Mapping[str, Any], shown: Mapping[str, Shown]) -> None:
+    """Draw maps side by side, or curves where an axis has one value; name the left one's axis."""
     for column, (kind, one) in enumerate(shown.items()):
-        panel = panels[kind]
-        image = _map(panel, *one.grid, one.values, **one.options)
+        panel, (upward, along) = panels[kind], one.grid
         panel.set_title(one.title)
-        panel.set_ylabel("" if column else AXIS.get(axis, axis))
-        figure.colorbar(image, ax=panel, label=one.unit, location="bottom", aspect=20)
+        if all(axis.size > 1 for axis in one.grid.values()):
+            x, y = one.grid[along], one.grid[upward]
+            how = {"shading": "nearest", "rasterized": True}
+            image = panel.pcolormesh(x, y, one.values, **how, **one.options)
+            panel.set_ylabel("" if column else _label(upward))
+            figure.colorbar(image, ax=panel, label=one.unit, location="bottom", aspect=20)
+        else:
+            along = along if one.grid[along].size > 1 else upward
+            panel.plot(one.grid[along], one.values.ravel(), "k.-", lw=0.8, ms=2)
+            panel.set_ylabel(one.unit)
+            if one.options is not RESIDUAL:
+                low, high = one.options["vmin"], one.options["vmax"]
+                panel.set_ylim(low - 0.05 * (high - low), high + 0.05 * (high - low))
+        panel.set_xlabel(_label(along))
+
+
+def _label(axis: str) -> str:
+    return "{} [{}]".format(*SYMBOLS[axis]) if axis in SYMBOLS else axis
 
 
 def sure_gap(result: xr.Dataset) -> FloatArray:
@@ -95,14 +140,3 @@ def sure_gap(result: xr.Dataset) -> FloatArray:
     surely = (result["P_gap"] >= SURE).sum("gap").to_numpy()
     energies = np.concatenate([[0.0], result["gap"].to_numpy()])
     return np.asarray(energies[surely])
-
-
-def _map(panel: Any, mu: FloatArray, B: FloatArray, values: Any, **options: Any) -> Any:
-    panel.set_xlabel("$B$ [T]")
-    if mu.size == 1:  # as wide as the panel
-        panel.set_yticks(mu)
-        mu, values = mu + APART, np.ma.repeat(values, 2, axis=0)
-    if B.size == 1:
-        panel.set_xticks(B)
-        B, values = B + APART, np.ma.repeat(values, 2, axis=1)
-    return panel.pcolormesh(B, mu, values, shading="nearest", rasterized=True, **options)
