@@ -41,7 +41,7 @@ def result(measured):
 @pytest.mark.parametrize("ending", [".html", ".png", ".pdf"])
 def test_a_result_is_drawn_in_each_format(result, measured, tmp_path, ending):
     path = tmp_path / f"drawn{ending}"
-    plot_inference(result, measurement_of(measured, PAPERS_SETTINGS, complete=False), path)
+    plot_inference(result, measurement_of(measured, PAPERS_SETTINGS), path)
     begins = {".html": b"<!doctype html>", ".png": b"\x89PNG", ".pdf": b"%PDF"}
     assert path.read_bytes().startswith(begins[ending])
     assert [one.name for one in tmp_path.iterdir()] == [path.name]
@@ -93,7 +93,7 @@ def test_a_bias_without_data_is_not_drawn(result, measured, tmp_path):
     gaps = measured.copy(deep=True)
     gaps["G_LL"][:, :, 1] = np.nan
     path = tmp_path / "drawn.svg"
-    plot_inference(result, measurement_of(gaps, PAPERS_SETTINGS, complete=False), path)
+    plot_inference(result, measurement_of(gaps, PAPERS_SETTINGS), path)
     assert "-0.03 meV" in path.read_text().replace("\N{MINUS SIGN}", "-")
 
 
@@ -124,7 +124,7 @@ def test_maps_are_over_the_axes_of_more_than_one_value(result, measured, at, axe
             strict=True,
         )
     )
-    shown = measurement_of(measured.isel(of_data), PAPERS_SETTINGS, complete=False)
+    shown = measurement_of(measured.isel(of_data), PAPERS_SETTINGS)
     draw_conductances(figure, panels, result.isel(at), shown)
     draw_maps(figure, panels, result.isel(at), shown)
     assert (panels["measured"].get_ylabel(), panels["measured"].get_xlabel()) == axes

@@ -11,7 +11,7 @@ import disorder_landscape as dl
 from disorder_landscape import ArgumentError, Nanowire, conductance
 from disorder_landscape.config import DatasetConfig, WireConfig
 from disorder_landscape.inference.verification.comparison import scores, table
-from disorder_landscape.inference.verify import control_wires
+from disorder_landscape.inference.verify import control_wires, wires_like
 from disorder_landscape.model.disorder import cosine_components
 from disorder_landscape.model.quantities import CONDUCTANCES
 
@@ -185,8 +185,8 @@ def lacking(name):
     [
         ({"measurements": []}, "measurement must be one Dataset or more, but there is none"),
         ({"measurements": [3]}, "measurement must be a Dataset, but it is 'int'"),
-        ({"measurements": changed().drop_vars("G_LR")}, "it lacks G_LR"),
-        ({"measurements": changed().isel(mu=0)}, "the dims of G_LL are B, bias"),
+        ({"measurements": changed().drop_vars(CONDUCTANCES)}, "it lacks G_LL, G_RR, G_LR, G_RL"),
+        ({"measurements": changed().isel(mu=0, drop=True)}, "it lacks mu"),
         ({"measurements": changed().expand_dims(realization=2)}, "realization"),
         ({"measurements": lacking("theta")}, "must state theta, barrier, temperature"),
         ({"measurements": lacking("barrier")}, "it lacks barrier"),
@@ -240,6 +240,55 @@ def test_what_an_inversion_has_found_is_judged_by_its_mean():
     assert verify(found, measured, shifts=[0.0])["mismatch"].max() < 1e-9
 
 
+def test_what_was_not_measured_has_no_weight():
+    """… neither channels nor single numbers; and other settings are as they were found."""
+    found = inversion_of(TRUE, 1e-3 * np.random.default_rng(2).normal(size=60))
+    whole = measure(TRUE, noise=0.01)
+    some = whole.drop_vars(["G_LR", "G_RL"])
+    some["G_RR"] = some["G_RR"].where(some["bias"] < 0)
+    result = verify(found, some, noise=0.01, shifts=[0.0])
+    for name in ("mismatch", "control_mismatch", "ratio", "noise"):
+        assert np.isnan(result[name].sel(channel=["G_LR", "G_RL"])).all()
+    below = verify(found, whole.sel(bias=[-0.03]), noise=0.01, shifts=[0.0])
+    local = verify(found, whole, noise=0.01, shifts=[0.0])
+    np.testing.assert_allclose(result["mismatch"][0, 0], local["mismatch"][0, 0], rtol=1e-3)
+    np.testing.assert_allclose(result["mismatch"][0, 1], below["mismatch"][0, 1], rtol=1e-3)
+    assert result["p_samples"] > 0.02
+    assert result.attrs["verdict"].startswith("The prediction passes: ")
+    lines = table(result.assign_coords(measurement=["some"]))
+    assert sum(line.endswith("not measured") for line in lines) == 2
+    assert not any("nan" in line for line in lines)
+
+
+def test_one_value_of_an_axis_may_be_a_scalar():
+    found, one = prediction_of(TRUE), measure(TRUE).isel(mu=[1])
+    scalar = verify(found, one.isel(mu=0))
+    np.testing.assert_array_equal(scalar["mismatch"], verify(found, one)["mismatch"])
+
+
+def test_settings_that_a_measurement_does_not_state_are_as_an_inversion_has_found_them():
+    found = inversion_of(TRUE, np.zeros(60))
+    prior = dl.Prior(COMPONENTS, SITES, alpha=(1, 20), temperature=0.04, barrier_left=(10, 20))
+    prior = replace(prior, barrier_right=20.0)
+    found = found.assign_attrs(prior=json.dumps(prior.to_dict()), theta=0.0)
+    found = found.assign(barrier_left_mean=12.0, barrier_left=("sample", np.full(60, 12.0)))
+    measured = measure(TRUE, barrier=(12.0, 20.0), temperature=0.04).drop_attrs()
+    assert verify(found, measured, shifts=[0.0])["mismatch"].max() < 1e-9
+
+
+@pytest.mark.parametrize("axis", ["mu", "gate"])
+def test_a_gate_voltage_is_not_taken_for_mu(axis):
+    found, measured = inversion_of(TRUE, np.zeros(60)), measure(TRUE)
+    if axis == "mu":
+        measured = measured.rename(mu="gate")
+    else:
+        found = found.assign_coords(gate=[0.1, 0.4])
+    other = "gate" if axis == "mu" else "mu"
+    message = f"measurement must be over {axis}, .*, but it is over {other}"
+    with pytest.raises(ArgumentError, match=message):
+        verify(found, measured)
+
+
 def test_a_result_of_an_older_version_is_refused_in_one_sentence():
     """Its dim was member, and its error bars had other names."""
     old = inversion_of(TRUE, np.zeros(60)).rename(sample="member")
@@ -266,10 +315,27 @@ def test_samples_of_an_inversion_make_the_data_or_not(barrier):
     shifted = replace(TRUE, potential=TRUE.potential + 20 * bar)
     wrong = verify(inversion_of(shifted, apart), measured, **options)
     assert wrong["p_samples"] < 0.02
-    assert wrong["p_value"] < 0.06  # far better than wrong disorder, even so
+    assert wrong["score"] < 0.5 * wrong["control_score"].median()  # far better, even so
     few = verify(inversion_of(TRUE, apart[:9]), measured, **options)
     results = (right, wrong, few)
     for result, says in zip(
         results, ("posterior predicts", "does not predict", "cannot say"), strict=True
     ):
         assert says in table(result.assign_coords(measurement=["a"]))[-1]
+
+
+def test_wrong_disorder_is_measured_in_a_wire_as_the_inversion_has_found_it():
+    """… whose gap is another than the paper's, so that biases are too."""
+    wire = replace(TRUE, delta0=0.3)
+    found = inversion_of(wire, np.zeros(60))
+    prior = dl.Prior(COMPONENTS, SITES, alpha=(1, 20), delta0=0.3)
+    found = found.assign_attrs(prior=json.dumps(prior.to_dict()))
+    measured = measure(wire, bias=[-0.2, 0.1])
+    result = verify(found, measured, shifts=[0.0])
+    assert result["mismatch"].max() < 1e-9
+    assert result["control_mismatch"].min() > 1e-4
+    one, two = (wires_like(wire, prior, 3, seed=7) for _ in range(2))
+    assert [w.delta0 for w in one] == [0.3] * 3
+    for first, second in zip(one, two, strict=True):
+        np.testing.assert_array_equal(first.potential, second.potential)
+    assert len({w.alpha for w in one}) == 3

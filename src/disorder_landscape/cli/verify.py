@@ -53,10 +53,9 @@ def verify(
     from disorder_landscape.dataset.store import read_dataset, write_dataset
     from disorder_landscape.files import check_netcdf
     from disorder_landscape.inference.report import parse_noise
-    from disorder_landscape.inference.verification.comparison import table
+    from disorder_landscape.inference.verification.comparison import OF_CHANNELS, table
     from disorder_landscape.inference.verify import verify as compare
     from disorder_landscape.learning.model import load_model_config
-    from disorder_landscape.model.quantities import CONDUCTANCES
     from disorder_landscape.simulation import parse_grid
 
     if output is not None:
@@ -66,7 +65,7 @@ def verify(
         require(output.resolve() not in read, "output", must, f"it is '{output}'")
     config = None if model is None else load_model_config(model).dataset
     predicted = read_dataset(prediction, ("potential",))
-    measured = [read_dataset(path, CONDUCTANCES) for path in measurements]
+    measured = [read_dataset(path) for path in measurements]
     tried = parse_grid("shifts", shifts)
     errors = None if noise is None else parse_noise(noise)
     with tqdm(unit=" settings", delay=1, desc="verify") as bar:
@@ -78,7 +77,7 @@ def verify(
         result = compare(predicted, measured, errors, controls, seed, config, tried, progress)
     result = result.assign_coords(measurement=[str(path) for path in measurements])
     if output is not None:
-        write_dataset(result, output, made_here(), may_lack=["p_samples"])  # where they are few
+        write_dataset(result, output, made_here(), may_lack=["p_samples", *OF_CHANNELS])
     print("\n".join(table(result)))
     if output is not None:
         print(f"wrote {output}")

@@ -146,7 +146,7 @@ def _infer_file(settings: Settings, task: Task, progress: Progress = silent) -> 
         progress=progress,
     )
     if task.plot is not None:  # before the result, which tells that all is done
-        explained = measurement_of(measured, PAPERS_SETTINGS, complete=False)
+        explained = measurement_of(measured, PAPERS_SETTINGS)
         plot_inference(result, explained, task.plot)
     asked = _asked(task.measurement, settings, _given(settings))
     attrs = {**settings.made, ASKED: asked}

@@ -211,7 +211,7 @@ def observation_of(
     else:
         config = prior if isinstance(prior, DatasetConfig) else _config_of(prior)
         usual, known = settings_of(config), Prior.of_dataset(config)
-    measurement = measurement_of(G, usual, complete=False)
+    measurement = measurement_of(G, usual)
     errors = noise_of_channels(stated_noise(G.attrs) if noise is None else noise)
     return Observation(measurement, Unknowns(known.for_measurement(measurement)), errors)
 

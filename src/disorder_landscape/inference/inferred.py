@@ -46,11 +46,31 @@ def sample_wires(result: xr.Dataset) -> list[Nanowire]:
     ]
 
 
+def settings_of_result(result: xr.Dataset) -> dict[str, object]:
+    """Return θ, barriers and temperature at which the device was measured, as far as is known."""
+    prior = prior_of_result(result)
+    values = {**prior.known, **_means(result, prior)}
+    settings: dict[str, object] = {"theta": result.attrs.get("theta", 0.0)}
+    if "temperature" in values:
+        settings["temperature"] = values["temperature"]
+    if "barrier_left" in values and "barrier_right" in values:
+        settings["barrier"] = (values["barrier_left"], values["barrier_right"])
+    return settings
+
+
 def as_calibrated(result: xr.Dataset, measurement: Measurement) -> Measurement:
     """Return a measurement of the same device at the μ and the biases that it has in truth.
 
     Temperature and barriers are the measurement's own.
+
+    Raises
+    ------
+    ArgumentError
+        If the result is over a gate voltage and the measurement over μ, or the other way round.
     """
+    axis = "gate" if "gate" in result.dims else "mu"
+    must = f"be over {axis}, as that of the inversion was"
+    require(measurement.axis == axis, "measurement", must, f"it is over {measurement.axis}")
     prior, setup = prior_of_result(result), Setup(measurement.mu, measurement.bias)
     _enter(prior, setup, _means(result, prior))
     return replace(measurement, mu=setup.mu, bias=setup.bias, axis="mu")

@@ -29,7 +29,13 @@ from disorder_landscape.arguments import (
     whole_number_in,
 )
 from disorder_landscape.config import DatasetConfig
-from disorder_landscape.inference.inferred import as_calibrated, mean_wire, sample_wires
+from disorder_landscape.inference.inferred import (
+    as_calibrated,
+    mean_wire,
+    prior_of_result,
+    sample_wires,
+    settings_of_result,
+)
 from disorder_landscape.inference.problem.measurement import (
     Measurement,
     check_wire,
@@ -41,8 +47,11 @@ from disorder_landscape.inference.problem.observation import (
     noise_of_channels,
     stated_noise,
 )
+from disorder_landscape.inference.problem.prior import Prior
+from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.verification.comparison import (
     LEAST_SAMPLES,
+    OF_CHANNELS,
     SIGNIFICANCE,
     comparison,
 )
@@ -53,6 +62,8 @@ from disorder_landscape.model.parameters import PARAMETER_RANGES, FloatArray, Na
 from disorder_landscape.observables.conductance import Progress
 
 CONTROLS = 50
+NOT_MEASURED = 1e3
+"""Noise in e²/h of channels that were not measured: they have no weight."""
 
 
 def verify(
@@ -75,6 +86,8 @@ def verify(
     measurements : Dataset or sequence of them
         G_LL … G_RL in e²/h with dims (mu, B, bias) in any order, and the attributes theta
         (radians), barrier (left and right, meV) and temperature (K), as `conductance` returns them.
+        Channels, and single numbers, may be missing (NaN). Of an inversion, attributes that are
+        missing are as it has found them, and the first axis is that of its measurement, mu or gate.
     noise : float or mapping
         Standard deviation of the measured conductances' errors in e²/h, or of each channel's. By
         default the attribute noise of each measurement, or none.
@@ -84,7 +97,8 @@ def verify(
         Of the controls.
     config : DatasetConfig, optional
         Disorder model of the network, from which controls are drawn; by default the paper's with
-        the prediction's number of sites and of components.
+        the prediction's number of sites and of components. Of an inversion, by default, its prior's
+        disorder and α, in wires that are as it has found them in all else.
     shifts : array, shape (shift,)
         Means of V in meV that are tried, increasing, with finer steps around the best one then;
         0 takes the potentials as they are.
@@ -101,13 +115,13 @@ def verify(
         chance that wrong disorder scores as well; the sentence verdict as attribute. Channels in
         which wrong disorder differs by no more than the noise have no weight in the scores. Of an
         inversion, p_samples: the posterior predictive p-value of the measurements, NaN where it has
-        fewer than 49 samples.
+        fewer than 49 samples. What is said of a channel is NaN where it was not measured.
 
     Raises
     ------
     ArgumentError
-        If the prediction or a measurement is not one wire's, lacks a variable or an attribute or
-        holds NaN, if an older version of `infer` made the prediction, if the settings cannot be
+        If the prediction or a measurement is not one wire's, lacks a variable or an
+        attribute, if an older version of `infer` made the prediction, if the settings cannot be
         simulated, or another argument is out of range.
     """
     check_progress(progress)
@@ -119,22 +133,26 @@ def verify(
     require(bool(given), "measurement", must, "there is none")
     known = config is None or isinstance(config, DatasetConfig)
     require(known, "config", "be a DatasetConfig", f"it is {shown(config)}")
-    measured = [measurement_of(dataset) for dataset in given]
     if _is_inversion(prediction):
-        measured = [as_calibrated(prediction, one) for one in measured]
+        usual = settings_of_result(prediction)
+        measured = [as_calibrated(prediction, measurement_of(one, usual)) for one in given]
     else:
+        measured = [measurement_of(dataset) for dataset in given]
         for measurement in measured:
             check_wire(measurement)
+    there = np.array([np.isfinite(m.G).any(axis=(0, 1, 2)) for m in measured])
     stated = [stated_noise(dataset.attrs, 0.0) if noise is None else noise for dataset in given]
-    errors = np.array([noise_of_channels(one) for one in stated])
+    errors = np.where(there, [noise_of_channels(one) for one in stated], NOT_MEASURED)
     controls = whole_number_in("controls", controls, round(1 / SIGNIFICANCE) - 1, 10_000)
     seed = whole_number_in("seed", seed, 0, 2**63)
     tried = grid_in("shifts", shifts, -1.0, 1.0, "meV")
     predicted = _predicted_wire(prediction)
-    model = _disorder_model(prediction, predicted, config)
-    lead_mu = model.wire.lead_mu
-    controlled = [predicted, *control_wires(model, controls, seed)]
-    wires = [replace(wire, lead_mu=lead_mu) for wire in controlled]
+    if config is None and _is_inversion(prediction):
+        wires = [predicted, *wires_like(predicted, prior_of_result(prediction), controls, seed)]
+    else:
+        model = _disorder_model(prediction, predicted, config)
+        controlled = [predicted, *control_wires(model, controls, seed)]
+        wires = [replace(wire, lead_mu=model.wire.lead_mu) for wire in controlled]
     samples = _samples(prediction)
     in_all = simulations(len(wires), measured, tried)
     in_all += len(samples) * sum(m.mu.size * m.B.size for m in measured)
@@ -145,6 +163,8 @@ def verify(
 
     squares, shift = mean_squares(wires, measured, tried, errors, report)
     result = comparison(np.sqrt(squares), shift, errors)
+    for name in OF_CHANNELS:
+        result[name] = result[name].where(xr.DataArray(there, dims=("measurement", "channel")))
     if _is_inversion(prediction):
         p = _p_of_samples(samples, measured, errors, np.random.default_rng([seed, 2]), report)
         result["p_samples"] = ((), p, {"units": "1"})
@@ -180,11 +200,13 @@ def _p_of_samples(
             progress(m.mu.size * m.B.size)
         Y.append(each)
     data = np.concatenate([m.G.ravel() for m in measured])
+    there = np.isfinite(data)
     variance = [
         np.broadcast_to(errors_variance(errors), m.G.shape).ravel()
         for errors, m in zip(noise, measured, strict=True)
     ]
-    return predictive_p(np.concatenate(Y, axis=1), data, np.concatenate(variance), rng)
+    found = np.concatenate(Y, axis=1)[:, there]
+    return predictive_p(found, data[there], np.concatenate(variance)[there], rng)
 
 
 def _predicted_wire(prediction: xr.Dataset) -> Nanowire:
@@ -223,6 +245,14 @@ def _disorder_model(
     require(made_by == config.hash, "prediction", must, "it comes from another dataset's")
     require(predicted.sites == config.sites, "prediction", must, f"it has {predicted.sites} sites")
     return config
+
+
+def wires_like(wire: Nanowire, prior: Prior, count: int, seed: int = 0) -> list[Nanowire]:
+    """Return wires with random disorder and α of a prior, which are like this one in all else."""
+    unknowns, rng = Unknowns(prior), np.random.default_rng([seed, 3])
+    X = unknowns.prior.draw(rng, 2 * count)[:count]
+    both = zip(unknowns.potential(X), unknowns.parameter("alpha", X), strict=True)
+    return [replace(wire, potential=V, alpha=float(alpha)) for V, alpha in both]
 
 
 def control_wires(config: DatasetConfig, count: int, seed: int = 0) -> list[Nanowire]:

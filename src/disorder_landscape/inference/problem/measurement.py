@@ -96,30 +96,27 @@ def simulated(wires: Nanowire | Sequence[Nanowire], at: Measurement) -> FloatArr
     return np.stack([G[name].to_numpy() for name in CONDUCTANCES], axis=-1)
 
 
-def measurement_of(
-    dataset: xr.Dataset, usual: Mapping[str, object] | None = None, complete: bool = True
-) -> Measurement:
+def measurement_of(dataset: xr.Dataset, usual: Mapping[str, object] | None = None) -> Measurement:
     """Return a measurement of one wire, checked.
 
     Parameters
     ----------
     dataset : Dataset
         G_LL … G_RL in e²/h, dims (mu, B, bias) in any order, or gate in place of mu, and the
-        attributes SETTINGS, as `conductance` returns them.
+        attributes SETTINGS, as `conductance` returns them. One number is enough; what is missing is
+        NaN. An axis of one value may be a scalar coordinate.
     usual : mapping, optional
         Settings where the attributes are missing.
-    complete : bool
-        Whether each conductance must be there and finite; otherwise one number is enough, and what
-        is missing is NaN.
 
     Raises
     ------
     ArgumentError
-        If it lacks a variable, a dim or an attribute, has several wires, holds NaN or infinity, is
-        in other units, or states that the wire is another than the models'.
+        If it lacks a variable, a dim or an attribute, has several wires, holds infinity, is in
+        other units, or states that the wire is another than the models'.
     """
     is_dataset = isinstance(dataset, xr.Dataset)
     require(is_dataset, "measurement", "be a Dataset", f"it is {type(dataset).__name__!r}")
+    dataset = with_axes(dataset)
     axis = "gate" if "gate" in dataset.dims and "mu" not in dataset.variables else "mu"
     if axis == "gate":
         values = dataset["gate"].to_numpy()
@@ -127,7 +124,7 @@ def measurement_of(
     must = "hold the conductances of one wire over mu, B and bias"
     given = [name for name in CONDUCTANCES if name in dataset.variables]
     missing = [name for name in (*CONDUCTANCES, *AXES) if name not in dataset.variables]
-    if not complete and given:
+    if given:
         missing = [name for name in missing if name in AXES]
     require(not missing, "measurement", must, f"it lacks {', '.join(missing)}")
     for name in given:
@@ -143,7 +140,7 @@ def measurement_of(
         require(is_axis, name, "be numbers along their own dimension", "it is something else")
     dataset = dataset.sortby(list(AXES))
     return Measurement(
-        G=_checked_conductances(dataset, given, complete),
+        G=_checked_conductances(dataset, given),
         mu=_axis(dataset, "mu", 1e3 if axis == "mu" else 1e6),
         B=_axis(dataset, "B", 100.0),
         bias=_axis(dataset, "bias", 1e3),
@@ -186,15 +183,22 @@ def check_wire(measurement: Measurement) -> None:
         require(bool(np.isclose(stated, usual)), name, must, f"the measurement's is {stated:g}")
 
 
-def _checked_conductances(dataset: xr.Dataset, given: list[str], complete: bool) -> FloatArray:
+def with_axes(dataset: xr.Dataset) -> xr.Dataset:
+    """Return a dataset in which axes that are scalar coordinates have a dim of their own."""
+    scalars = [name for name in ("gate", *AXES) if name in dataset.coords]
+    return dataset.expand_dims([name for name in scalars if dataset[name].ndim == 0])
+
+
+def _checked_conductances(dataset: xr.Dataset, given: list[str]) -> FloatArray:
     """Return the conductances (mu, B, bias, channel) in e²/h, NaN for what is not given."""
     shape = tuple(dataset.sizes[axis] for axis in AXES)
     G = np.full((*shape, len(CONDUCTANCES)), np.nan)
     for name in given:
         values = dataset[name].transpose(*AXES).to_numpy()
         numbers = values.dtype.kind in "fiu"
-        finite = numbers and bool((np.isfinite(values) | (np.isnan(values) & (not complete))).all())
-        require(finite, "measurement", "hold finite numbers", "it holds something else")
+        finite = numbers and not np.isinf(values).any()
+        but = f"{name} holds {'infinity' if numbers else 'something else'}"
+        require(finite, "measurement", "hold finite numbers or NaN", but)
         G[..., CONDUCTANCES.index(name)] = values
         unit = str(dataset[name].attrs.get("units", ""))
         require(unit in QUANTA, "measurement", IN_QUANTA, f"the units of {name} are {unit}")

@@ -53,7 +53,7 @@ def without_series_resistance(measured: xr.Dataset, left: float, right: float) -
         number_in(name, value, 0.0, LARGEST_RESISTANCE, "Ω")
         for name, value in (("left", left), ("right", right))
     ]
-    measurement = measurement_of(measured, PAPERS_SETTINGS, complete=False)
+    measurement = measurement_of(measured, PAPERS_SETTINGS)
     missing = [name for name in CONDUCTANCES if name not in measured.variables]
     must = "hold all four conductances, since each line changes what the other shows"
     require(not missing, "measurement", must, f"it lacks {', '.join(missing)}")

@@ -16,6 +16,8 @@ LEAST_SAMPLES = round(1 / UNLIKELY) - 1
 """Of fewer samples no p-value is so small."""
 LEAST_SIGNAL = 0.5
 """Share of the mismatch of wrong disorder that must not be noise, in one channel at least."""
+OF_CHANNELS = ("mismatch", "control_mismatch", "noise", "ratio")
+"""Variables of a result that are NaN for channels that were not measured."""
 _TINY = np.finfo(float).tiny
 
 
@@ -99,13 +101,16 @@ def table(result: xr.Dataset) -> list[str]:
     wrong = result["control_mismatch"].to_numpy()
     for i, name in enumerate(result["measurement"].to_numpy()):
         for c, channel in enumerate(result["channel"].to_numpy()):
-            lines.append(
-                f"{str(name)[-30:] if c == 0 else '':30} {channel:7} "
-                f"{result['mismatch'].to_numpy()[i, c]:9.5f} {np.median(wrong[:, i, c]):23.5f} "
-                f"{wrong[:, i, c].min():9.5f} {result['ratio'].to_numpy()[i, c]:7.3f}"
-            )
+            begin = f"{str(name)[-30:] if c == 0 else '':30} {channel:7} "
+            if np.isnan(wrong[0, i, c]):
+                lines.append(f"{begin}not measured")
+                continue
+            mismatch, ratio = (result[of].to_numpy()[i, c] for of in ("mismatch", "ratio"))
+            median, least = np.median(wrong[:, i, c]), wrong[:, i, c].min()
+            lines.append(f"{begin}{mismatch:9.5f} {median:23.5f} {least:9.5f} {ratio:7.3f}")
     shift = 1e3 * float(result["shift"])
-    noise = ", ".join(f"{one:g}" for one in np.unique(result["noise"]))
+    noises = result["noise"].to_numpy()
+    noise = ", ".join(f"{one:g}" for one in np.unique(noises[np.isfinite(noises)]))
     lines.append(f"mean of V that fits best: {shift:g} µeV; noise: {noise} e²/h")
     lines.append(str(result.attrs["verdict"]))
     if "p_samples" in result:

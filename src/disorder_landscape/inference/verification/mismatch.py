@@ -24,6 +24,8 @@ from disorder_landscape.observables.conductance import conductance
 
 SHIFTS = np.linspace(-3 * MEAN_STD, 3 * MEAN_STD, 13)
 """Means of V in meV that are tried; the steps are about kT."""
+NOTHING = 1.0
+"""In (e²/h)²: of channels that were not measured, whose noise leaves them no weight."""
 FINER = np.linspace(-0.8, 0.8, 9)
 """Then those around the best of them, in units of the step: conductances change within kT."""
 
@@ -59,7 +61,7 @@ def mean_squares(
     Returns
     -------
     array, shape (wire, measurement, channel)
-        In (e²/h)².
+        In (e²/h)²; NOTHING where nothing was measured.
     array, shape (wire,)
         In meV.
     """
@@ -107,6 +109,7 @@ def _of_wire(
         found = conductance(here, mu, m.B, m.bias, m.temperature, theta=m.theta)
         for c, name in enumerate(CONDUCTANCES):
             simulated = found[name].to_numpy()[back.reshape(shifted.shape)]
-            squares[:, i, c] = ((simulated - m.G[..., c]) ** 2).mean(axis=(1, 2, 3))
+            off = (simulated - m.G[..., c])[:, np.isfinite(m.G[..., c])]
+            squares[:, i, c] = (off**2).mean(axis=1) if off.size else NOTHING
         progress(shifted.size * m.B.size)
     return squares
