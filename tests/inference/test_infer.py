@@ -15,7 +15,9 @@ from disorder_landscape.chain import FIVE, shipped_model
 from disorder_landscape.config import Config, DatasetConfig, TrainingConfig
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.files import read_json
+from disorder_landscape.inference.infer import observation_of
 from disorder_landscape.inference.invert import InversionSettings
+from disorder_landscape.inference.problem.distributions import Uniform
 from disorder_landscape.inference.problem.measurement import measurement_of, settings_of
 from disorder_landscape.inference.problem.observation import (
     Observation,
@@ -276,7 +278,7 @@ def test_the_seed_decides(measured, inferred):
         ),
         (lambda G: G * np.nan, {}, "hold finite numbers, but it holds none"),
         (lambda G: G / 0.0, {}, "hold finite numbers"),
-        (lambda G: G.isel(mu=0), {}, "the dims of G_LL are B, bias"),
+        (lambda G: G.isel(mu=0, drop=True), {}, "it lacks mu"),
         (lambda G: G.drop_vars(CONDUCTANCES), {}, "it lacks G_LL, G_RR, G_LR, G_RL"),
         (lambda G: G.isel(mu=slice(5)), {"network": True}, "it differs in mu"),
         (lambda G: G.isel(B=[0, 1, 1, 2, 3, 4]), {}, "B must be .* not sorted"),
@@ -287,7 +289,7 @@ def test_the_seed_decides(measured, inferred):
         (lambda G: G.assign_attrs(barrier=[15.0, np.nan]), {}, "barrier must be a number"),
         (lambda G: G.assign_attrs(barrier=[15.0, 1e9]), {}, "barrier must be a number"),
         (lambda G: G.assign(G_LL=G["G_LL"].assign_attrs(units="2e^2/h")), {}, "G_LL are 2e.2/h"),
-        (lambda G: G + 0j, {}, "hold finite numbers, but it holds something else"),
+        (lambda G: G + 0j, {}, "hold finite numbers or NaN, but G_LL holds something else"),
         (lambda G: G.assign_attrs(noise=[0.1, 0.2]), {"noise": None}, "measurement states 2"),
         (lambda G: G, {"noise": True}, "noise must be a number .* it is True"),
         (lambda G: G, {"samples": 2.5}, "samples must be a whole number"),
@@ -391,7 +393,7 @@ def test_noise_is_what_the_measurement_states():
 def test_sweeps_may_go_either_way(measured):
     """And axes in any order."""
     backward = measured.isel(B=slice(None, None, -1), mu=[3, 1, 0, 2, 5, 4])
-    there, back = (measurement_of(G, complete=True) for G in (measured, backward))
+    there, back = (measurement_of(G) for G in (measured, backward))
     for name in ("G", "mu", "B", "bias"):
         np.testing.assert_array_equal(getattr(there, name), getattr(back, name))
 
@@ -414,10 +416,19 @@ def test_a_network_says_what_errors_it_knows():
     ],
 )
 def test_noise_that_is_other_than_stated_is_noticed(misfit, says):
-    hint = stated_noise_hint(np.array(misfit), np.full(4, 0.001))
+    hint = stated_noise_hint(np.array(misfit), np.full(4, 0.001), excess=10.0)
     assert says in hint
     assert bool(says) == bool(hint)
-    assert stated_noise_hint(np.array(misfit), np.zeros(4)) == ""
+    assert stated_noise_hint(np.array(misfit), np.zeros(4), excess=10.0) == ""
+    few_data = stated_noise_hint(np.array(misfit), np.full(4, 0.001), excess=-2.0)
+    assert few_data == ""  # as many unknowns explain whatever the noise is
+
+
+def test_one_channel_is_not_alike():
+    """Whatever the model lacks, its misfit is larger; a smaller one is a sign of less noise."""
+    noise, one = np.full(4, 0.001), np.array([1.0, np.nan, np.nan, np.nan])
+    assert stated_noise_hint(0.004 * one, noise, excess=10.0) == ""
+    assert "smaller" in stated_noise_hint(0.0004 * one, noise, excess=-10.0)
 
 
 def test_the_summary_says_it_all(inferred):
@@ -445,3 +456,24 @@ def test_the_shipped_network_and_the_rounds_find_a_fixed_wire():
     assert result.attrs["start"] == "the network's guess"
     assert site_error(result, true.potential) < 0.002
     assert float(np.sqrt(((guess["potential"] - true.potential) ** 2).mean())) > 0.004
+
+
+def test_a_prior_is_read_from_its_file(measured, tmp_path):
+    path = tmp_path / "prior.toml"
+    path.write_text("components = 1\nsites = 50\ng = [23, 27]\n")
+    by_file = observation_of(measured, path, {"G_LL": 0.01, "G_RR": 0.01, "G_LR": 0.1, "G_RL": 0.1})
+    assert by_file.unknowns.given.g == Uniform(23, 27)
+    local = observation_of(measured[["G_LL", "G_RR"]], str(path), {"G_LL": 0.02, "G_RR": 0.01})
+    assert local.noise[:2].tolist() == [0.02, 0.01]
+    with pytest.raises(ArgumentError, match="noise must be one number, or one for each"):
+        observation_of(measured, path, {"G_LL": 0.02, "G_RR": 0.01})
+
+
+def test_biases_without_data_are_left_out(measured):
+    """… so that they may be beyond the gap."""
+    bias = measured["bias"].to_numpy()
+    beyond = measured.assign_coords(bias=[*bias[:-1], 0.5])
+    beyond = beyond.where(beyond["bias"] < 0.4).assign_attrs(measured.attrs)
+    found = measurement_of(beyond)
+    np.testing.assert_array_equal(found.bias, bias[:-1])
+    np.testing.assert_array_equal(found.G[..., 1], measured["G_RR"][:, :, :-1])

@@ -160,14 +160,19 @@ def test_a_file_that_is_no_prior_is_refused_in_one_sentence(tmp_path, text, says
         ),
         ({"mass": 0.02}, "mu", {"mass": 0.03}, "mass must be 0.02"),
         ({}, "gate", {}, "prior must say a lever arm, in meV per unit of the measurement's gate"),
-        ({"delta0": (0.02, 0.2)}, "mu", {}, "all biases below the gap .* may be 0.03 meV"),
+        (
+            {"delta0": (0.02, 0.2)},
+            "mu",
+            {},
+            "below the least gap .* 0.03 \\+ 0 meV is not below 0.02",
+        ),
         (
             {"delta0": 0.035, "bias_offset": (-0.01, 0.01)},
             "mu",
             {},
-            "may be 0.04 meV, .* gap 0.03",
+            "0.03 \\+ 0.01 meV is not below 0.035 meV",
         ),
-        ({"critical_field": (0.4, 0.6)}, "mu", {}, "below the gap .* and the gap 0"),
+        ({"critical_field": (0.4, 0.6)}, "mu", {}, "is not below 0 meV at 0.5 T"),
     ],
 )
 def test_prior_and_measurement_may_not_contradict_each_other(prior, axis, attrs, says):

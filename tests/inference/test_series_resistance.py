@@ -54,7 +54,7 @@ def test_kirchhoffs_laws_hold(G, left, right):
         currents = np.linalg.solve(laws, np.vstack([np.zeros((2, 2)), np.eye(2)]))[:2] / QUANTUM
         expected = [currents[0, 0], currents[1, 1], -currents[0, 1], -currents[1, 0]]
         np.testing.assert_allclose(
-            in_series((left, right), np.array([LL, RR, LR, RL])), expected, atol=1e-12
+            in_series((left, right), np.array([LL, RR, LR, RL])), expected, atol=1e-9
         )
 
 
@@ -72,14 +72,26 @@ def test_what_was_measured_through_resistances_is_that_of_the_wire_again(wire):
     np.testing.assert_allclose(found["gate"], wire["mu"])
 
 
-def test_what_is_missing_of_one_is_missing_of_all(wire):
+def test_what_is_missing_stays_so_and_counts_as_zero(wire):
+    """… which is a small mistake: nonlocal conductances enter squared."""
     measured = behind(wire, 1e3, 1e3)
+    local = dl.without_series_resistance(measured[["G_LL", "G_RR"]], 1e3, 1e3)
+    assert set(local) == {"G_LL", "G_RR"}
+    for name in local:
+        np.testing.assert_allclose(local[name], wire[name], atol=3e-3)
     measured["G_LR"][0, 1, 1] = np.nan
+    measured["G_LL"][1, 1, 1] = np.nan
     found = dl.without_series_resistance(measured, 1e3, 1e3)
     for name in CONDUCTANCES:
-        expected = wire[name].copy()
-        expected[0, 1, 1] = np.nan
-        np.testing.assert_allclose(found[name], expected, atol=1e-12)
+        np.testing.assert_array_equal(np.isnan(found[name]), np.isnan(measured[name]))
+        there = np.isfinite(found[name]).to_numpy()
+        np.testing.assert_allclose(found[name].data[there], wire[name].data[there], atol=5e-3)
+
+
+def test_biases_without_data_are_left_out(wire):
+    scalar = behind(wire, 1e3, 1e3).where(wire["bias"] > 0).isel(mu=0)
+    found = dl.without_series_resistance(scalar, 1e3, 1e3)
+    np.testing.assert_allclose(found["G_LL"], wire["G_LL"][:1, :, 1:], atol=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -87,7 +99,6 @@ def test_what_is_missing_of_one_is_missing_of_all(wire):
     [
         (lambda G: G, -1.0, "left must be a number from 0 to 1e"),
         (lambda G: G, 9e5, "must be less than the resistance that was measured in all"),
-        (lambda G: G.drop_vars("G_LR"), 1e3, "all four conductances.* it lacks G_LR"),
         (lambda G: QUANTUM * G, 1e3, "as if they were in siemens"),
         (lambda G: G.drop_vars("bias"), 1e3, "it lacks bias"),
     ],

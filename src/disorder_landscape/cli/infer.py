@@ -130,6 +130,7 @@ def _infer_alone(settings: Settings, task: Task) -> None:
     from disorder_landscape.inference.progress import announce_inference, inference_progress
     from disorder_landscape.inference.report import noise_hint, summary
     from disorder_landscape.learning.model import existing_folder, load_model_config
+    from disorder_landscape.model.parameters import NOISE_FLOOR
     from disorder_landscape.simulation import check_plot
 
     output, plot = task.output, task.plot
@@ -143,6 +144,8 @@ def _infer_alone(settings: Settings, task: Task) -> None:
     measured = read_dataset(task.measurement)
     errors = stated_noise(measured.attrs) if settings.noise is None else settings.noise
     observation = observation_of(measured, prior_of(settings), errors)
+    if settings.noise is None and "noise" not in measured.attrs:
+        print(f"No noise is stated: {NOISE_FLOOR:g} e²/h is taken (--noise says another).")
     if settings.model is not None and not settings.from_prior:
         training = load_model_config(existing_folder(settings.model)).training
         if hint := noise_hint(training, errors):

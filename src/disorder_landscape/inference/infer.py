@@ -59,10 +59,13 @@ from disorder_landscape.learning.model import (
     load_model,
     load_model_config,
 )
+from disorder_landscape.model.quantities import CONDUCTANCES
 
 SAMPLES = 64
 SEARCH = 8
 """Number of the search's version. What an interrupted run of another one has found is of no use."""
+TOML = ".toml"
+"""Ending of a prior's file."""
 Model = str | Path | TrainedModel
 
 
@@ -94,11 +97,11 @@ def infer(
         missing, or NaN here and there; the others are explained. If some of the network's grid are
         missing, the start is the prior.
     prior : Prior, path or TrainedModel
-        What is known of the device and what is not; or the folder of a trained model, whose
-        dataset says so.
+        What is known of the device and what is not, or the file (.toml) that says so; or the folder
+        of a trained model, whose dataset does.
     noise : float or mapping
-        Standard deviation of the measurement's errors in e²/h, or of each channel's. By default the
-        attribute noise of the measurement, or 0.001.
+        Standard deviation of the measurement's errors in e²/h, or of each channel's that is there.
+        By default the attribute noise of the measurement, or 0.001.
     network : bool, path or TrainedModel, optional
         Which network guesses. By default that of the model, if one is given instead of a prior;
         False starts from the prior: for other grids than the network's.
@@ -141,6 +144,7 @@ def infer(
         if the noise is negative or another argument is out of range, or if prior and measurement
         say different things of a parameter.
     """
+    prior = _prior_of(prior)
     known = prior if isinstance(prior, Prior) else _config_of(prior)
     observation = observation_of(G, known, noise)
     check_progress(progress)
@@ -206,14 +210,23 @@ def observation_of(
     ArgumentError
         As in `infer`.
     """
+    prior = prior if isinstance(prior, DatasetConfig) else _prior_of(prior)
     if isinstance(prior, Prior):
         usual, known = PAPERS_SETTINGS, prior
     else:
         config = prior if isinstance(prior, DatasetConfig) else _config_of(prior)
         usual, known = settings_of(config), Prior.of_dataset(config)
     measurement = measurement_of(G, usual)
+    if isinstance(noise, Mapping):  # of channels that are not there none needs to be known
+        noise = {name: noise.get(name, 0.0) for name in CONDUCTANCES if name not in G} | dict(noise)
     errors = noise_of_channels(stated_noise(G.attrs) if noise is None else noise)
     return Observation(measurement, Unknowns(known.for_measurement(measurement)), errors)
+
+
+def _prior_of(given: Prior | Model) -> Prior | Model:
+    """Return the prior that a file says, where one is given."""
+    is_file = isinstance(given, str | Path) and Path(given).suffix == TOML
+    return Prior.from_toml(given) if is_file else given  # type: ignore[arg-type]
 
 
 def _config_of(model: Model) -> DatasetConfig:

@@ -19,6 +19,7 @@ from disorder_landscape.inference.problem.measurement import Measurement
 from disorder_landscape.inference.report import (
     error_bar,
     parameter_with_std,
+    plain,
     prior_as_text,
     sentences_on,
 )
@@ -123,7 +124,7 @@ def _potential_std(panel: Any, result: xr.Dataset) -> None:
         label = f"{high - low} % of the samples"
         panel.fill_between(site, *between, color="C0", alpha=alpha, lw=0, label=label)
     panel.set(xlabel="site", ylabel="off [µeV]", xlim=(site[0], site[-1]))
-    bar = f"error bar of V: {error_bar(result):.2g} µeV, root mean square"
+    bar = f"error bar of V: {plain(error_bar(result))} µeV, root mean square"
     panel.set_title(f"samples minus mean; {bar}")
     low, high = panel.get_ylim()
     panel.set_ylim(low, high + 0.5 * (high - low))  # room for the legend
@@ -157,9 +158,14 @@ def _parameters(panel: Any, result: xr.Dataset, unknown: Mapping[str, Distributi
 def _misfit(panel: Any, result: xr.Dataset) -> None:
     position = np.arange(len(CONDUCTANCES))
     panel.bar(position, result["misfit"], 0.6, color="C0", alpha=0.5, label="misfit")
-    panel.plot(position, result.attrs["noise"], "k_", ms=18, label="stated noise")
+    noise = np.where(np.isfinite(result["misfit"]), result.attrs["noise"], np.nan)
+    panel.plot(position, noise, "k_", ms=18, label="stated noise")
+    if "discrepancy" in result:
+        errors = np.hypot(noise, result["discrepancy"])
+        panel.plot(position, errors, "_", color="C3", ms=18, label="and discrepancy")
     names = [rf"$G_\mathrm{{{name[2:]}}}$" for name in CONDUCTANCES]
     panel.set_xticks(position, names)
     largest = max(result["misfit"].max(), np.max(result.attrs["noise"]))
-    panel.set(ylabel="r.m.s. [$e^2/h$]", ylim=(0, 1.4 * largest or None))
-    panel.legend(frameon=False, ncols=2, loc="upper center")
+    panel.set(ylabel="r.m.s. [$e^2/h$]", ylim=(0, 1.5 * largest or None), xlim=(-0.6, 3.6))
+    narrow = {"handlelength": 1.0, "columnspacing": 1.0, "handletextpad": 0.4, "markerscale": 0.6}
+    panel.legend(frameon=False, ncols=3, loc="upper center", **narrow)

@@ -10,7 +10,7 @@ import xarray as xr
 
 from disorder_landscape.inference.problem.measurement import Measurement
 from disorder_landscape.inference.problem.observation import errors_variance
-from disorder_landscape.inference.report import SURE
+from disorder_landscape.inference.report import SURE, has_dissipation
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.model.quantities import CONDUCTANCES
 
@@ -54,7 +54,8 @@ def draw_conductances(
     local = name in ("G_LL", "G_RR")
     norm = {"vmin": 0 if local else -largest, "vmax": largest}
     norm["cmap"] = "viridis" if local else "RdBu_r"
-    std = np.sqrt(errors_variance(result.attrs["noise"][channel]))
+    beside = float(result["discrepancy"][channel]) if "discrepancy" in result else 0.0
+    std = np.sqrt(errors_variance(result.attrs["noise"][channel]) + beside**2)
     symbol, unit = SYMBOLS.get(other, (other, ""))
     value = f"{symbol} = {axes[other][at]:g} {unit}".strip()
     off, all_errors = (G - answer) / std, r"$\sigma$ of all errors"
@@ -96,10 +97,11 @@ def draw_maps(
     in_gap = {"cmap": "cividis", "vmin": 0, "vmax": most}
     P, exceed = result["P_topological"].to_numpy(), f"gap that {100 * SURE:.0f} % exceed"
     T_IV = result["T_IV"][0].to_numpy()
+    closed = r" ($\Gamma = 0$)" if has_dissipation(result) else ""
     shown = {
-        "T": Shown(fine, T_IV, r"$T_\mathrm{IV}$ of the mean", "", in_T),
+        "T": Shown(fine, T_IV, rf"$T_\mathrm{{IV}}$ of the mean{closed}", "", in_T),
         "P": Shown(fine, P, "$P$(topological); dots: data", "", in_P),
-        "gap": Shown(data, gap, exceed, "µeV", in_gap),
+        "gap": Shown(data, gap, exceed + closed, "µeV", in_gap),
     }
     _row_of_maps(figure, panels, shown)
     along, upward = np.meshgrid(measurement.B, measurement.mu)

@@ -8,8 +8,11 @@ import xarray as xr
 from disorder_landscape.arguments import numbers_of
 from disorder_landscape.config import TrainingConfig
 from disorder_landscape.inference.inferred import prior_of_result
+from disorder_landscape.inference.optimum import TOLERATED
 from disorder_landscape.inference.problem.distributions import Distribution, Uniform
 from disorder_landscape.inference.problem.observation import noise_of_channels, one_or_each
+from disorder_landscape.inference.problem.unknowns import Unknowns
+from disorder_landscape.inference.result import OPEN
 from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED, NOT_DESCRIBED
 from disorder_landscape.model.parameters import NOISE_FLOOR, FloatArray
 from disorder_landscape.model.quantities import CONDUCTANCES
@@ -51,21 +54,24 @@ def noise_hint(training: TrainingConfig, noise: float | dict[str, float]) -> str
     )
 
 
-def stated_noise_hint(misfit: FloatArray, noise: FloatArray) -> str:
+def stated_noise_hint(misfit: FloatArray, noise: FloatArray, excess: float) -> str:
     """Return a line about noise that is other than stated; empty without any sign of that.
 
-    What a model lacks makes some channels worse than others; noise makes all alike.
+    What a model lacks makes some channels worse than others; noise makes all alike. Unknowns that
+    are about as many as the data explain them whatever the noise is.
 
     Parameters
     ----------
     misfit, noise : array, shape (channel,)
         In e²/h; NaN where nothing was measured.
+    excess : float
+        Of χ² above its mean, in its standard deviations.
     """
     there = np.isfinite(misfit) & (noise > 0)
     times = misfit[there] / noise[there]
-    if times.size == 0 or times.max() > ALIKE * times.min():
+    if times.size == 0 or times.max() > ALIKE * times.min() or abs(excess) < TOLERATED:
         return ""
-    if 1 / OTHERWISE < times.mean() < OTHERWISE:
+    if 1 / OTHERWISE < times.mean() < OTHERWISE or (times.size == 1 and times.mean() > 1):
         return ""
     other = "larger" if times.mean() > 1 else "smaller, and so the error bars"
     return (
@@ -87,6 +93,22 @@ def prior_as_text(belief: Distribution) -> str:
     if isinstance(belief, Uniform):
         return f"{belief.low:g} to {belief.high:g}"
     return f"{belief.mean:g} ± {belief.std:g}"
+
+
+def plain(number: float) -> str:
+    """Return a number with two digits, and no exponent where it is neither large nor small."""
+    return f"{float(f'{number:.2g}'):g}"
+
+
+def _prior_bar(result: xr.Dataset) -> float:
+    """Return the prior's standard deviation of V in meV, root mean square over the sites."""
+    unknowns = Unknowns(prior_of_result(result))
+    return unknowns.site_std(unknowns.prior.covariance)
+
+
+def has_dissipation(result: xr.Dataset) -> bool:
+    """Return whether the wire of a result has dissipation, or may have it."""
+    return "dissipation" in result or bool(result.attrs.get("dissipation", 0.0))
 
 
 def error_bar(result: xr.Dataset) -> float:
@@ -112,7 +134,10 @@ def verdict_sentence(result: xr.Dataset) -> str:
     """Return the verdict as a sentence."""
     verdict = result.attrs["verdict"]
     if verdict == CONVERGED:
-        known = f"V is known to {error_bar(result):.2g} µeV (r.m.s. over the sites)"
+        bar, before = error_bar(result), 1e3 * _prior_bar(result)
+        known = f"V is known to {plain(bar)} µeV (r.m.s. over the sites)"
+        if bar > OPEN * before:
+            known += f", hardly better than before ({plain(before)} µeV)"
         return f"Converged: this wire explains the data within their noise; {known}."
     reason = {
         NOT_CONVERGED: "a better answer may have been missed",
@@ -127,6 +152,8 @@ def topological_sentence(result: xr.Dataset) -> str:
     surely, perhaps = 100 * float((P >= SURE).mean()), 100 * float((P > 1 - SURE).mean())
     measured = f"the measured {'gate' if 'gate' in result.dims else 'µ'} and B"
     meaning = "topological where there is a gap"
+    if has_dissipation(result):
+        meaning += ", without its dissipation"
     if perhaps == 0:
         return f"T_IV < 0, {meaning}, nowhere in {measured}."
     share = f"{surely:.0f}" if surely == 0 or surely >= 1 else "less than 1"
@@ -158,8 +185,12 @@ def discrepancy_sentence(result: xr.Dataset) -> str:
 
 def not_fixed_lines(result: xr.Dataset) -> list[str]:
     """Return sentences on what the data do not fix, and do not tell apart, if there is any."""
-    said = {"not_fixed": "The data do not fix: ", "not_told_apart": "They do not tell apart: "}
-    return [f"{words}{result.attrs[name]}." for name, words in said.items() if result.attrs[name]]
+    said = {
+        "not_fixed": "The data do not fix: ",
+        "not_told_apart": "They do not tell apart: ",
+        "at_limit": "At a limit that the prior sets, which may be too narrow: ",
+    }
+    return [f"{words}{text}." for name, words in said.items() if (text := result.attrs[name])]
 
 
 def summary(result: xr.Dataset) -> list[str]:
@@ -176,6 +207,8 @@ def summary(result: xr.Dataset) -> list[str]:
         lines.append(f"{name:14}  {parameter_with_std(result, name)}; before: {known}")
     if result.attrs["not_fixed"]:
         lines.append(f"not fixed       {result.attrs['not_fixed']}")
+    if result.attrs["at_limit"]:
+        lines.append(f"at a limit      {result.attrs['at_limit']}: the prior may be too narrow")
     if result.attrs["not_told_apart"]:
         lines.append(f"not told apart  {result.attrs['not_told_apart']}")
     if attrs["verdict"] != CONVERGED:
@@ -183,5 +216,6 @@ def summary(result: xr.Dataset) -> list[str]:
     for name, misfit, noise in misfits(result):
         unit = f" e²/h; noise: {noise} e²/h" if noise else ""
         lines.append(f"misfit of {name}  {misfit}{unit}")
-    hint = stated_noise_hint(result["misfit"].to_numpy(), np.asarray(attrs["noise"]))
+    noises = np.asarray(attrs["noise"])
+    hint = stated_noise_hint(result["misfit"].to_numpy(), noises, attrs["excess"])
     return [*lines, *(line for line in (discrepancy_sentence(result), hint) if line)]

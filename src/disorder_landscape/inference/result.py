@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +11,7 @@ import xarray as xr
 
 from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.posterior.importance_sampling import weighted_samples
-from disorder_landscape.inference.problem.distributions import Distribution
+from disorder_landscape.inference.problem.distributions import Distribution, Uniform
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.problem.parameters import BY_NAME
 from disorder_landscape.inference.problem.unknowns import Device, Unknowns, share_settings
@@ -27,6 +28,10 @@ OPEN = 0.8
 """An unknown is not fixed whose standard deviation is more than this share of the prior's."""
 ALIKE = 0.95
 """Two are not told apart whose correlation is larger than this."""
+NEAR_LIMIT, KNOWN = 1.5, 0.15
+"""A parameter is at a limit of a uniform prior if it is nearer than so many standard deviations,
+and if one is less than this part of the prior's range (0.29 of it is as little as is known
+before)."""
 HERMITE = 61
 """Nodes by which the mean of a parameter's distribution is taken."""
 
@@ -87,6 +92,7 @@ def result_of(observation: Observation, outcome: Outcome, samples: int, seed: in
         **unknowns.given.known,
         **evidence(observation, outcome, X),
         **left_open(unknowns, covariance),
+        "at_limit": at_limit(dataset, unknowns.parameters),
         "prior": json.dumps(unknowns.given.to_dict()),
     }
     if m.axis != "mu":
@@ -121,6 +127,24 @@ def evidence(observation: Observation, outcome: Outcome, X: FloatArray) -> dict[
         "log_evidence": found.log_mean_weight + of_the_errors,
         "effective_sample_size": found.effective_sample_size,
     }
+
+
+def at_limit(result: xr.Dataset, parameters: Mapping[str, Distribution]) -> str:
+    """Return as words which parameters are where their prior ends, though they may be beyond.
+
+    Of those of which any value between two is as likely before, if they are known better than that.
+    """
+    said = []
+    for name, belief in parameters.items():
+        if not isinstance(belief, Uniform):
+            continue
+        mean, std = result[f"{name}_mean"].item(), result[f"{name}_std"].item()
+        limit = min(belief.low, belief.high, key=lambda end: abs(end - mean))
+        can_go_on = limit not in (BY_NAME[name].low, BY_NAME[name].high)
+        is_known = std < KNOWN * (belief.high - belief.low)
+        if can_go_on and is_known and abs(mean - limit) < NEAR_LIMIT * std:
+            said.append(f"{name} ({limit:g} {BY_NAME[name].unit}".rstrip() + ")")
+    return ", ".join(said)
 
 
 def left_open(unknowns: Unknowns, covariance: FloatArray) -> dict[str, str]:

@@ -104,7 +104,8 @@ def measurement_of(dataset: xr.Dataset, usual: Mapping[str, object] | None = Non
     dataset : Dataset
         G_LL … G_RL in e²/h, dims (mu, B, bias) in any order, or gate in place of mu, and the
         attributes SETTINGS, as `conductance` returns them. One number is enough; what is missing is
-        NaN. An axis of one value may be a scalar coordinate.
+        NaN, and biases at which nothing was measured are left out. An axis of one value may be a
+        scalar coordinate.
     usual : mapping, optional
         Settings where the attributes are missing.
 
@@ -139,11 +140,13 @@ def measurement_of(dataset: xr.Dataset, usual: Mapping[str, object] | None = Non
         is_axis = dataset[name].dims == (name,) and dataset[name].dtype.kind in "fiu"
         require(is_axis, name, "be numbers along their own dimension", "it is something else")
     dataset = dataset.sortby(list(AXES))
+    G = _checked_conductances(dataset, given)
+    there = np.isfinite(G).any(axis=(0, 1, 3))
     return Measurement(
-        G=_checked_conductances(dataset, given),
+        G=G[:, :, there],
         mu=_axis(dataset, "mu", 1e3 if axis == "mu" else 1e6),
         B=_axis(dataset, "B", 100.0),
-        bias=_axis(dataset, "bias", 1e3),
+        bias=_axis(dataset, "bias", 1e3)[there],
         theta=number_in("theta", settings["theta"], -FULL_TURN, FULL_TURN, "radians"),
         barrier=_two_barriers(settings["barrier"]),
         temperature=checked_temperature(settings["temperature"]),

@@ -183,11 +183,16 @@ class Prior:
     def _check_biases(self, measurement: Measurement) -> None:
         """Require that all biases lie below the gap, whatever the unknowns are."""
         gap, critical_field = (self.extremes(name)[0] for name in ("delta0", "critical_field"))
-        least = gap_in_field(gap, critical_field, float(abs(measurement.B).max()))
-        largest = abs(measurement.bias).max() + max(map(abs, self.extremes("bias_offset")))
-        must = "leave all biases below the gap of the parent superconductor"
-        but = f"a bias may be {largest:.4g} meV, and the gap {least:.4g}"
-        require(largest < least, "prior", must, but)
+        field = float(abs(measurement.B).max())
+        least = gap_in_field(gap, critical_field, field)
+        offset = max(map(abs, self.extremes("bias_offset")))
+        largest = float(abs(measurement.bias).max())
+        must = "lie below the least gap that the parent superconductor may have, offset included"
+        but = (
+            f"{largest:.4g} + {offset:.4g} meV is not below {least:.4g} meV at {field:g} T: leave "
+            "such biases out, or narrow the prior of delta0, critical_field or bias_offset"
+        )
+        require(largest + offset < least, "bias", must, but)
 
     def extremes(self, name: str) -> tuple[float, float]:
         """Return the least and the largest value of a parameter that is said."""

@@ -14,6 +14,7 @@ from disorder_landscape.inference.problem.measurement import (
     PAPERS_SETTINGS,
     QUANTUM,
     measurement_of,
+    with_axes,
 )
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.model.quantities import CONDUCTANCES
@@ -26,14 +27,15 @@ def without_series_resistance(measured: xr.Dataset, left: float, right: float) -
     """Return what a wire itself conducts, of conductances that were measured through resistances.
 
     Changes of the voltages are divided as Kirchhoff's laws say, all four conductances together:
-    M = M' / (1 − R M'), where M' is the measured matrix dI/dV. Biases stay those that were applied:
-    the wire sees less by R I.
+    M = M' / (1 − R M'), where M' is the measured matrix dI/dV. What is missing of it counts as
+    zero: nonlocal conductances G_n change local ones by R G_n². Biases stay those that were
+    applied: the wire sees less by R I. Errors grow by 1 / (1 − R M')², and the noise to be stated.
 
     Parameters
     ----------
     measured : Dataset
-        G_LL, G_RR, G_LR and G_RL in e²/h, with signs as `conductance` has them, and dims mu (or
-        gate), B and bias. Where one of the four is NaN all are.
+        G_LL, G_RR, G_LR and G_RL in e²/h, or some of them, with signs as `conductance` has them,
+        and dims mu (or gate), B and bias.
     left, right : float
         Of all that is in series with each lead, there and back: lines, filters, the amplifier's
         input; in Ω.
@@ -46,28 +48,23 @@ def without_series_resistance(measured: xr.Dataset, left: float, right: float) -
     Raises
     ------
     ArgumentError
-        If it is no measurement, lacks one of the four, or if the resistances are larger than what
-        was measured allows.
+        If it is no measurement, or if the resistances are larger than what was measured allows.
     """
-    R = [
-        number_in(name, value, 0.0, LARGEST_RESISTANCE, "Ω")
-        for name, value in (("left", left), ("right", right))
-    ]
-    measurement = measurement_of(measured, PAPERS_SETTINGS)
-    missing = [name for name in CONDUCTANCES if name not in measured.variables]
-    must = "hold all four conductances, since each line changes what the other shows"
-    require(not missing, "measurement", must, f"it lacks {', '.join(missing)}")
-    away = (-R[0], -R[1])
-    left_over = np.linalg.eigvals(_divided(away, _matrix(measurement.G)))
-    must = "be less than the resistance that was measured in all"
-    but = f"{R[0]:g} Ω and {R[1]:g} Ω are more where most is conducted"
-    require(bool((left_over.real > 0).all()), "left and right", must, but)
-    G = in_series(away, measurement.G)
-    axes = (measurement.axis, "B", "bias")
-    sorted_by_axes: xr.Dataset = measured.sortby(list(axes))
-    return sorted_by_axes.assign(
-        {name: (axes, G[..., k], measured[name].attrs) for k, name in enumerate(CONDUCTANCES)}
+    away = (
+        -number_in("left", left, 0.0, LARGEST_RESISTANCE, "Ω"),
+        -number_in("right", right, 0.0, LARGEST_RESISTANCE, "Ω"),
     )
+    measurement = measurement_of(measured, PAPERS_SETTINGS)
+    G = np.nan_to_num(measurement.G)
+    left_over = np.linalg.eigvals(_divided(away, _matrix(G)))
+    must = "be less than the resistance that was measured in all"
+    but = f"{left:g} Ω and {right:g} Ω are more where most is conducted"
+    require(bool((left_over.real > 0).all()), "left and right", must, but)
+    G = np.where(np.isnan(measurement.G), np.nan, in_series(away, G))
+    axes = {measurement.axis: measurement.mu, "B": measurement.B, "bias": measurement.bias}
+    whole: xr.Dataset = with_axes(measured).sel(axes)
+    there = [(k, name) for k, name in enumerate(CONDUCTANCES) if name in measured]
+    return whole.assign({name: (list(axes), G[..., k], whole[name].attrs) for k, name in there})
 
 
 def in_series(resistances: tuple[float, float], G: FloatArray) -> FloatArray:
@@ -76,14 +73,14 @@ def in_series(resistances: tuple[float, float], G: FloatArray) -> FloatArray:
     Of the changes of the voltages a part drops there, δI = M (δV − R δI). Negative ones take
     resistances away.
     """
-    M = _matrix(np.where(np.isfinite(G).all(axis=-1, keepdims=True), G, np.nan))
+    M = _matrix(G)
     M = np.linalg.solve(_divided(resistances, M), M).astype(np.float64)
     return np.stack([M[..., 0, 0], M[..., 1, 1], -M[..., 0, 1], -M[..., 1, 0]], axis=-1)
 
 
 def _divided(resistances: tuple[float, float], M: FloatArray) -> FloatArray:
-    """Return 1 + M R, by which M is divided; 1 where M is not known."""
-    return np.asarray(np.eye(2) + QUANTUM * np.nan_to_num(M) * np.array(resistances), np.float64)
+    """Return 1 + M R, by which M is divided."""
+    return np.asarray(np.eye(2) + QUANTUM * M * np.array(resistances), np.float64)
 
 
 def _matrix(G: FloatArray) -> FloatArray:
