@@ -104,6 +104,8 @@ def test_few_points_are_spread_over_what_is_measured():
 class Whole(Linear):
     """Linear data of a whole landscape, all of them in each part."""
 
+    measurement = NOTHING
+
     def at(self, mu, B, bias):
         return replace(self)
 
@@ -119,7 +121,7 @@ def whole():
     rng = np.random.default_rng(0)
     slope = rng.normal(size=(len(UNKNOWNS.names), DATA))
     truth = rng.normal(size=len(UNKNOWNS.names))
-    return Whole(truth @ slope, slope, unknowns=UNKNOWNS, measurement=NOTHING)
+    return Whole(truth @ slope, slope, unknowns=UNKNOWNS)
 
 
 @pytest.fixture

@@ -128,6 +128,16 @@ class Unknowns:
         """Return V_dis in meV, shape (…, site)."""
         return np.asarray(x[..., : self.of_disorder] @ self.to_potential.T)
 
+    def mirrored(self, x: FloatArray) -> FloatArray:
+        """Return the unknowns (unknown,) of the wire with its ends exchanged."""
+        found, n = x.copy(), self.of_disorder
+        found[:n] = np.linalg.lstsq(self.to_potential, self.potential(x)[::-1], rcond=None)[0]
+        left, right = (self.parameters.get(f"barrier_{end}") for end in ("left", "right"))
+        if left is not None and right is not None:
+            at = [self.names.index(f"barrier_{end}") for end in ("left", "right")]
+            found[at] = left.standard(right.value(x[at[1]])), right.standard(left.value(x[at[0]]))
+        return found
+
     def components(self, x: FloatArray) -> FloatArray:
         """Return c₁ … c_n in meV, shape (…, component)."""
         return np.asarray(x[..., : self.of_disorder] @ self._disorder[1][:-1].T)

@@ -18,7 +18,10 @@ from disorder_landscape.inference.optimum import (
     Optimum,
     add,
     best,
+    chi_square_excess,
+    is_noise,
     optimum_at,
+    same_answer,
     shares,
     unseen,
 )
@@ -129,6 +132,23 @@ class Optima:
                 )
             add(observation, found, optimum_at(observation, answer, one.found_by))
         return replace(self, observation=observation, found=found)
+
+    def look_at_mirror_image(self, attempt: int) -> None:
+        """Add the optimum at the mirror image of the best one, if that explains the data, too.
+
+        Data may be those of both, as nonlocal conductances without a bias are, and no start need
+        come near it. It is found by as many starts as the best one is.
+        """
+        if not self.fits:
+            return
+        chosen, observation = best(self.found), self.observation
+        x = observation.unknowns.mirrored(chosen.answer.mean)
+        if not is_noise(chi_square_excess(observation, observation.simulate(x[None])[0])):
+            return
+        end = self.steps(observation, x, attempt, "mirror", (), "optimum")
+        image = optimum_at(observation, end, chosen.found_by)
+        if not same_answer(observation, chosen, image):
+            add(observation, self.found, image)
 
     def found_again(self, k: int, attempt: int) -> None:
         """Note that another start leads to this one of those found."""
