@@ -147,6 +147,7 @@ def test_a_device_is_verified_at_other_settings(device, inferred):
     found = dl.verify(inferred, further, NOISE, controls=19, shifts=[0.0])
     assert float(found["mismatch"].max()) < 0.02
     assert found.attrs["verdict"].startswith("The prediction passes: ")
+    assert found["p_samples"] > 0.02
 
 
 @pytest.mark.parametrize("dissipation", [0.001, (0.0, 0.002)])
@@ -158,3 +159,26 @@ def test_maps_are_those_of_the_wire_without_its_dissipation(dissipation):
     closed = replace(mean_wire(found), dissipation=0.0, parent_dissipation=None)
     T_IV = dl.topological_visibility(closed, found["map_mu"], found["map_B"])
     assert_allclose(found["T_IV"], T_IV, atol=1e-9)
+
+
+def test_axes_and_gaps_say_what_they_are(inferred):
+    assert inferred["gate"].attrs["long_name"].startswith("gate voltage")
+    assert "units" not in inferred["map_gate"].attrs
+    assert inferred["gap"].attrs["units"] == "meV"
+
+
+def test_no_gap_is_beyond_the_parents_in_a_field():
+    """Without pairing there is no level below it here."""
+    wire = dl.Nanowire(np.zeros(20), gamma=0.0, critical_field=0.75)
+    G = dl.conductance(wire, [0.1, 0.4], [0.0, 0.7], [-0.02, 0.0]).drop_attrs()
+    prior = dl.Prior(1, 20, gamma=0.0, critical_field=0.75)
+    P = dl.infer(G, prior, NOISE, samples=2)["P_gap"]
+    parent = 0.12 * np.sqrt(1 - (0.7 / 0.75) ** 2)
+    assert (P.sel(B=0.7).where(P["gap"] > parent, 0.0) == 0).all()
+
+
+@pytest.mark.parametrize("name", ["lead_g", "lead_alpha", "parent_dissipation"])
+def test_leads_and_parents_that_are_not_as_the_wire_are_refused(device, name):
+    prior = dl.Prior(1, 80, lever_arm=0.12, mu_offset=OFFSET)
+    with pytest.raises(ArgumentError, match=f"{name} must be the wire's .* the measurement's is 1"):
+        dl.infer(device[1].assign_attrs({name: 1.0}), prior, NOISE)

@@ -270,10 +270,25 @@ def test_settings_that_a_measurement_does_not_state_are_as_an_inversion_has_foun
     found = inversion_of(TRUE, np.zeros(60))
     prior = dl.Prior(COMPONENTS, SITES, alpha=(1, 20), temperature=0.04, barrier_left=(10, 20))
     prior = replace(prior, barrier_right=20.0)
-    found = found.assign_attrs(prior=json.dumps(prior.to_dict()), theta=0.0)
+    stated = {"temperature": 0.04, "barrier_left": 15.0, "barrier_right": 20.0}
+    found = found.assign_attrs(
+        prior=json.dumps(prior.to_dict()), theta=0.0, settings=json.dumps(stated)
+    )
     found = found.assign(barrier_left_mean=12.0, barrier_left=("sample", np.full(60, 12.0)))
-    measured = measure(TRUE, barrier=(12.0, 20.0), temperature=0.04).drop_attrs()
-    assert verify(found, measured, shifts=[0.0])["mismatch"].max() < 1e-9
+    measured = measure(TRUE, barrier=(12.0, 20.0), temperature=0.04)
+    others = measure(TRUE, barrier=(18.0, 20.0), temperature=0.04)
+    as_before = measured.assign_attrs(barrier=(15.0, 20.0))
+    for one in (measured.drop_attrs(), as_before, others):
+        result = verify(found, one, shifts=[0.0])
+        assert result["mismatch"].max() < 1e-9
+        assert result["p_samples"] > 0.02
+    with pytest.raises(ArgumentError, match=r"^Argument prediction .* settings is damaged\.$"):
+        verify(found.assign_attrs(settings="[3]"), measured)
+    with pytest.raises(ArgumentError, match="g must be 25, as in the inversion, but it is 30"):
+        verify(
+            found.assign_attrs(prior=json.dumps(replace(prior, g=25.0).to_dict())),
+            measured.assign_attrs(g=30.0),
+        )
 
 
 @pytest.mark.parametrize("axis", ["mu", "gate"])

@@ -135,7 +135,8 @@ def infer(
         gap in meV. Attributes: verdict ("converged", "not converged" or "not described by the
         model"), excess (of χ² above its mean, in its standard deviations), log_evidence,
         effective_sample_size (of as many samples as are returned), attempts, rounds, start, noise,
-        prior (as JSON), and each known parameter. With gate instead of mu dims are named so.
+        prior and settings (as JSON: what is known and not, and what the measurement stated), and
+        each known parameter. With gate instead of mu dims are named so.
 
     Raises
     ------
@@ -184,6 +185,7 @@ def infer(
         "start": start,
         "noise": observation.noise,
         "theta": observation.measurement.theta,
+        "settings": json.dumps(observation.measurement.settings),
     }
     if isinstance(known, DatasetConfig):
         result.attrs["config_hash"] = known.hash
@@ -253,6 +255,9 @@ def _network(
         model = prior
     else:
         model = network
+    sites, of_network = observation.unknowns.given.sites, _config_of(model).sites
+    must = f"be of wires of {sites} sites, as the prior is"
+    require(of_network == sites, "network", must, f"it is of {of_network}")
     if not _on_grid_of_network(_config_of(model), observation).is_measured.all():
         why = "because the network needs all conductances of its grid and some are missing"
         return None, f"the prior, {why}"

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from disorder_landscape.arguments import number_in, reals, require
+from disorder_landscape.arguments import ArgumentError, number_in, reals, require
 from disorder_landscape.inference.problem.measurement import Measurement
 from disorder_landscape.inference.problem.parameters import PARAMETERS, Setup, nanowire
 from disorder_landscape.inference.problem.prior import FIXED, Prior
@@ -39,41 +39,85 @@ def sample_wires(result: xr.Dataset) -> list[Nanowire]:
         As `mean_wire`.
     """
     prior, potentials = prior_of_result(result), _array(result, "potential", ("sample", "site"))
-    values = {name: _array(result, name, ("sample",)) for name in prior.unknown}
-    return [
-        _wire(prior, V, {name: float(of[k]) for name, of in values.items()})
-        for k, V in enumerate(potentials)
-    ]
+    each = zip(potentials, _samples(result, prior), strict=True)
+    return [_wire(prior, V, values) for V, values in each]
 
 
 def settings_of_result(result: xr.Dataset) -> dict[str, object]:
-    """Return θ, barriers and temperature at which the device was measured, as far as is known."""
-    prior = prior_of_result(result)
-    values = {**prior.known, **_means(result, prior)}
+    """Return the settings that the measurement stated which was inverted; θ is as it was."""
+    stated = _stated(result)
     settings: dict[str, object] = {"theta": result.attrs.get("theta", 0.0)}
-    if "temperature" in values:
-        settings["temperature"] = values["temperature"]
-    if "barrier_left" in values and "barrier_right" in values:
-        settings["barrier"] = (values["barrier_left"], values["barrier_right"])
+    if stated:
+        barrier = (stated["barrier_left"], stated["barrier_right"])
+        settings |= {"temperature": stated["temperature"], "barrier": barrier}
     return settings
 
 
 def as_calibrated(result: xr.Dataset, measurement: Measurement) -> Measurement:
-    """Return a measurement of the same device at the μ and the biases that it has in truth.
+    """Return a measurement of the same device at the settings that it has in truth.
 
-    Temperature and barriers are the measurement's own.
+    μ and biases are as lever arm and offsets have it; and where a temperature or a barrier is
+    stated as it was for the inversion, it is what the inversion has found. Others are the
+    measurement's own.
 
     Raises
     ------
     ArgumentError
-        If the result is over a gate voltage and the measurement over μ, or the other way round.
+        If the result is over a gate voltage and the measurement over μ, or the other way round, or
+        if it states another value of what the prior knows.
     """
     axis = "gate" if "gate" in result.dims else "mu"
     must = f"be over {axis}, as that of the inversion was"
     require(measurement.axis == axis, "measurement", must, f"it is over {measurement.axis}")
-    prior, setup = prior_of_result(result), Setup(measurement.mu, measurement.bias)
-    _enter(prior, setup, _means(result, prior))
-    return replace(measurement, mu=setup.mu, bias=setup.bias, axis="mu")
+    prior = prior_of_result(result)
+    for name, stated in measurement.stated.items():
+        known = prior.known.get(name, stated)
+        if name not in _stated(result):  # but temperature and barriers, which may be others
+            is_same = bool(np.isclose(stated, known))
+            require(is_same, name, f"be {known:g}, as in the inversion", f"it is {stated:g}")
+    return _calibrated(result, prior, measurement, _means(result, prior))
+
+
+def as_calibrated_by_samples(result: xr.Dataset, measurement: Measurement) -> list[Measurement]:
+    """Return a measurement at the settings that it has according to each sample."""
+    prior = prior_of_result(result)
+    return [_calibrated(result, prior, measurement, one) for one in _samples(result, prior)]
+
+
+def _calibrated(
+    result: xr.Dataset, prior: Prior, measurement: Measurement, unknown: Mapping[str, float]
+) -> Measurement:
+    setup, stated, here = Setup(measurement.mu, measurement.bias), _stated(result), {}
+    _enter(prior, setup, unknown)
+    found = {"temperature": setup.temperature}
+    found["barrier_left"], found["barrier_right"] = setup.barrier
+    for name, own in measurement.settings.items():
+        here[name] = found[name] if np.isclose(own, stated.get(name, np.nan)) else own
+    return replace(
+        measurement,
+        mu=setup.mu,
+        bias=setup.bias,
+        temperature=here["temperature"],
+        barrier=(here["barrier_left"], here["barrier_right"]),
+        axis="mu",
+    )
+
+
+def _stated(result: xr.Dataset) -> dict[str, float]:
+    """Return temperature and barriers that the inverted measurement stated, by name."""
+    try:
+        given = json.loads(result.attrs.get("settings", "{}"))
+        return {name: float(value) for name, value in given.items()}
+    except (TypeError, ValueError, AttributeError):
+        raise ArgumentError("prediction", MUST, "its attribute settings is damaged") from None
+
+
+def _samples(result: xr.Dataset, prior: Prior) -> list[dict[str, float]]:
+    """Return the unknown parameters of each sample, by name."""
+    values = {name: _array(result, name, ("sample",)) for name in prior.unknown}
+    return [
+        {name: float(of[k]) for name, of in values.items()} for k in range(result.sizes["sample"])
+    ]
 
 
 def prior_of_result(result: xr.Dataset) -> Prior:

@@ -15,7 +15,7 @@ from disorder_landscape.inference.problem.distributions import Distribution, Uni
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.problem.parameters import BY_NAME
 from disorder_landscape.inference.problem.unknowns import Device, Unknowns, share_settings
-from disorder_landscape.model.parameters import FloatArray
+from disorder_landscape.model.parameters import FloatArray, gap_in_field
 from disorder_landscape.model.quantities import AXES, CONDUCTANCES, with_units
 from disorder_landscape.observables.visibility import topological_visibility
 from disorder_landscape.solver import routes
@@ -95,8 +95,13 @@ def result_of(observation: Observation, outcome: Outcome, samples: int, seed: in
         "at_limit": at_limit(dataset, unknowns.parameters),
         "prior": json.dumps(unknowns.given.to_dict()),
     }
-    if m.axis != "mu":
-        dataset = dataset.rename(mu=m.axis, map_mu=f"map_{m.axis}")
+    dataset["gap"].attrs = {"long_name": "lowest excitation", "units": "meV"}
+    dataset["P_gap"].attrs = {"long_name": "share of the samples above this energy", "units": "1"}
+    if m.axis == "mu":
+        return dataset
+    dataset = dataset.rename(mu=m.axis, map_mu=f"map_{m.axis}")
+    for name in (m.axis, f"map_{m.axis}"):
+        dataset[name].attrs = {"long_name": "gate voltage, in the measurement's unit"}
     return dataset
 
 
@@ -207,7 +212,9 @@ def _gap_probability(observation: Observation, X: FloatArray, gaps: FloatArray) 
     visibility = _visibility(observation, X, (m.mu, m.B))[:, 0]
     for device, T_IV in zip(_closed_devices(observation, X, m.mu), visibility, strict=True):
         levels = routes.levels([device.wire], device.setup.mu, m.B, 2, m.theta)[0]
-        levels = np.where(np.isnan(levels), device.wire.delta0, levels)
+        gap, critical_field = device.wire.delta0, device.wire.critical_field
+        parent = np.array([[gap_in_field(gap, critical_field, one)] for one in m.B])
+        levels = np.where(np.isnan(levels), parent, levels)
         excitation = np.where(T_IV < 0, levels[..., 1], levels[..., 0])
         above += excitation > gaps[:, None, None]
     return above / len(X)

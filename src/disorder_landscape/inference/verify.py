@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -31,6 +32,7 @@ from disorder_landscape.arguments import (
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.inference.inferred import (
     as_calibrated,
+    as_calibrated_by_samples,
     mean_wire,
     prior_of_result,
     sample_wires,
@@ -86,8 +88,9 @@ def verify(
     measurements : Dataset or sequence of them
         G_LL … G_RL in e²/h with dims (mu, B, bias) in any order, and the attributes theta
         (radians), barrier (left and right, meV) and temperature (K), as `conductance` returns them.
-        Channels, and single numbers, may be missing (NaN). Of an inversion, attributes that are
-        missing are as it has found them, and the first axis is that of its measurement, mu or gate.
+        Channels, and single numbers, may be missing (NaN). Of an inversion the first axis is
+        that of its measurement, mu or gate. Temperature and barriers that are missing, or stated as
+        they were for it, are what it has found.
     noise : float or mapping
         Standard deviation of the measured conductances' errors in e²/h, or of each channel's. By
         default the attribute noise of each measurement, or none.
@@ -135,7 +138,8 @@ def verify(
     require(known, "config", "be a DatasetConfig", f"it is {shown(config)}")
     if _is_inversion(prediction):
         usual = settings_of_result(prediction)
-        measured = [as_calibrated(prediction, measurement_of(one, usual)) for one in given]
+        stated_ones = [measurement_of(one, usual) for one in given]
+        measured = [as_calibrated(prediction, one) for one in stated_ones]
     else:
         measured = [measurement_of(dataset) for dataset in given]
         for measurement in measured:
@@ -153,7 +157,7 @@ def verify(
         model = _disorder_model(prediction, predicted, config)
         controlled = [predicted, *control_wires(model, controls, seed)]
         wires = [replace(wire, lead_mu=model.wire.lead_mu) for wire in controlled]
-    samples = _samples(prediction)
+    samples = _samples(prediction, stated_ones) if _is_inversion(prediction) else []
     in_all = simulations(len(wires), measured, tried)
     in_all += len(samples) * sum(m.mu.size * m.B.size for m in measured)
 
@@ -175,15 +179,23 @@ def _is_inversion(prediction: xr.Dataset) -> bool:
     return isinstance(prediction, xr.Dataset) and "potential_mean" in prediction.variables
 
 
-def _samples(prediction: xr.Dataset) -> list[Nanowire]:
-    """Return the samples of an inversion, if the prediction is one and has enough of them."""
-    if not _is_inversion(prediction) or prediction.sizes.get("sample", 0) < LEAST_SAMPLES:
+class Sample(NamedTuple):
+    """A sample of an inversion, and the measurements as they are if it is the truth."""
+
+    wire: Nanowire
+    measured: Sequence[Measurement]
+
+
+def _samples(prediction: xr.Dataset, measured: Sequence[Measurement]) -> list[Sample]:
+    """Return the samples of an inversion, if it has enough of them."""
+    if prediction.sizes.get("sample", 0) < LEAST_SAMPLES:
         return []
-    return sample_wires(prediction)
+    each = zip(*(as_calibrated_by_samples(prediction, m) for m in measured), strict=True)
+    return [Sample(*both) for both in zip(sample_wires(prediction), each, strict=True)]
 
 
 def _p_of_samples(
-    samples: Sequence[Nanowire],
+    samples: Sequence[Sample],
     measured: Sequence[Measurement],
     noise: FloatArray,
     rng: np.random.Generator,
@@ -193,10 +205,11 @@ def _p_of_samples(
     if not samples:
         return np.nan
     Y = []
-    for m in measured:
+    for k, m in enumerate(measured):
         each = []
-        for wire in samples:
-            each.append(simulated(replace(wire, barrier=m.barrier), m).ravel())
+        for sample in samples:
+            at = sample.measured[k]
+            each.append(simulated(replace(sample.wire, barrier=at.barrier), at).ravel())
             progress(m.mu.size * m.B.size)
         Y.append(each)
     data = np.concatenate([m.G.ravel() for m in measured])

@@ -36,6 +36,8 @@ OF_THE_WIRE = (
 """Parameters of `Nanowire` that a measurement may state as attributes, besides its barriers."""
 FIXED = tuple(name for name in OF_THE_WIRE if name not in ("alpha", "lead_mu"))
 """Those that all wires of this program's networks have in common."""
+AS_THE_WIRE = {"lead_alpha": "alpha", "lead_g": "g", "parent_dissipation": "dissipation"}
+"""Parameters of leads and parent that are, in every inversion, those of the wire."""
 AXIS_UNITS = {"mu": ("meV",), "B": ("T", "tesla"), "bias": ("meV", "mV")}
 """Units that axes may state."""
 IN_QUANTA = f"be in e²/h, which is {QUANTUM:.4g} S, by which conductances in S are divided"
@@ -162,6 +164,12 @@ def _stated(attrs: Mapping[Any, object]) -> dict[str, float]:
         for name in OF_THE_WIRE
         if name in attrs
     }
+    for name, of_wire in AS_THE_WIRE.items():
+        if name in attrs:
+            own = number_in(name, attrs[name], *PARAMETER_RANGES[name])
+            same = stated.get(of_wire, getattr(Nanowire, of_wire))
+            must = f"be the wire's {of_wire}, {same:g}, as in every inversion"
+            require(bool(np.isclose(own, same)), name, must, f"the measurement's is {own:g}")
     if "temperature" in attrs:
         stated["temperature"] = checked_temperature(attrs["temperature"])
     if "barrier" in attrs:
