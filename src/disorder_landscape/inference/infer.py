@@ -124,9 +124,9 @@ def infer(
     Dataset
         Of the samples: potential (sample, site) in meV, components (sample, component) in meV, if
         the prior has any, and each unknown parameter (sample) under its own name. Means and
-        standard deviations of the posterior itself, of all of these, with _mean and _std. misfit
-        (channel) in e²/h, of the most probable wire, NaN where nothing was measured. Of the mean:
-        conductances G_LL … G_RL (mu, B, bias) and, on a finer grid, T_IV (lead, map_mu, map_B).
+        standard deviations of the posterior itself, of all of these, with _mean and _std. Of the
+        most probable wire: conductances G_LL … G_RL (mu, B, bias) and misfit (channel) in e²/h, NaN
+        where nothing was measured. Of the mean, on a finer grid: T_IV (lead, map_mu, map_B).
         With discrepancy, the standard deviation of that error, discrepancy (channel) in e²/h, whose
         attribute settled is 0 where more turns or samples may change it; log_evidence then is that
         with these errors.

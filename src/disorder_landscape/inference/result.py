@@ -44,7 +44,7 @@ def result_of(observation: Observation, outcome: Outcome, samples: int, seed: in
     X = outcome.draw(np.random.default_rng([seed, 2**31 + 1]), samples)
     maps = _maps(m.mu, m.B)
     T_IV = _visibility(observation, np.concatenate([mean[None], X]), maps)
-    G = observation.conductances(mean[None])[0]
+    G = observation.conductances(outcome.best.answer.mean[None])[0]
     grid, gaps = ("map_mu", "map_B"), _gap_energies(observation)
     data = {
         "potential": (("sample", "site"), unknowns.potential(X)),
