@@ -112,9 +112,10 @@ def test_every_parameter_is_a_field_of_the_prior_and_enters():
     [
         ({"components": 0}, "components must be a number from 1 to 59"),
         ({"components": 60}, "components must be a number from 1 to 59"),
-        ({"g": (30, 20)}, "g must be a distribution of some width"),
-        ({"g": (20, 20)}, "g must be a distribution of some width"),
-        ({"g": (20, np.nan)}, "g must be a distribution of some width"),
+        ({"g": (30, 20)}, "g must have two finite .* smaller one first, .* they are 30 and 20"),
+        ({"g": (20, 20)}, "g must have two finite numbers"),
+        ({"g": (20, np.nan)}, "g must have two finite numbers"),
+        ({"critical_field": (1, np.inf)}, "critical_field must have two finite .* 1 and inf"),
         ({"g": (1, 2, 3)}, r"g must be a number, a pair \(low, high\), or a normal distribution"),
         ({"g": "large"}, "g must be a number, a pair"),
         ({"g": {"mean": 25}}, "g must be a number, a pair"),

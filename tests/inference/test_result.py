@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray as xr
 from numpy.testing import assert_allclose
 from scipy.stats import multivariate_normal
 
@@ -14,7 +15,7 @@ from disorder_landscape.inference.optimum import Optimum
 from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.problem.distributions import Normal, Uniform
 from disorder_landscape.inference.report import summary
-from disorder_landscape.inference.result import evidence, left_open, moments
+from disorder_landscape.inference.result import at_limit, evidence, left_open, moments
 from disorder_landscape.model.quantities import CONDUCTANCES
 from linear_data import DATA, SIZE, UNKNOWNS, posterior
 
@@ -182,3 +183,26 @@ def test_leads_and_parents_that_are_not_as_the_wire_are_refused(device, name):
     prior = dl.Prior(1, 80, lever_arm=0.12, mu_offset=OFFSET)
     with pytest.raises(ArgumentError, match=f"{name} must be the wire's .* the measurement's is 1"):
         dl.infer(device[1].assign_attrs({name: 1.0}), prior, NOISE)
+
+
+@pytest.mark.parametrize(
+    ("mean", "std", "said"),
+    [
+        (0.1998, 0.001, {"delta0": "0.2 meV"}),
+        (0.151, 0.001, {"delta0": "0.15 meV"}),
+        (0.175, 0.0005, {}),
+        (0.175, 0.0144, {}),  # as little known as before
+    ],
+)
+def test_limits_of_the_prior_are_named(mean, std, said):
+    """… but not those that a parameter has of its own, as dissipation has at zero."""
+    parameters = {"delta0": Uniform(0.15, 0.2), "dissipation": Uniform(0.0, 0.002)}
+    found = {"delta0_mean": mean, "delta0_std": std, "dissipation_mean": 1e-6}
+    result = xr.Dataset(found | {"dissipation_std": 1e-6})
+    assert at_limit(result, parameters) == said
+
+
+def test_what_is_at_a_limit_is_not_called_open():
+    covariance = np.diag([1e-4, 1e-4, 1e-4, 1e-4, 0.81])
+    assert left_open(UNKNOWNS, covariance)["not_fixed"] == "alpha"
+    assert left_open(UNKNOWNS, covariance, ["alpha"])["not_fixed"] == ""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -88,11 +88,12 @@ def result_of(observation: Observation, outcome: Outcome, samples: int, seed: in
             of = {"": "", "_mean": "mean of the ", "_std": "standard deviation of the "}[ending]
             attrs = {"long_name": of + BY_NAME[name].long_name, "units": BY_NAME[name].unit or "1"}
             dataset[name + ending] = (dims, value, attrs)
+    limits = at_limit(dataset, unknowns.parameters)
     dataset.attrs = {
         **unknowns.given.known,
         **evidence(observation, outcome, X),
-        **left_open(unknowns, covariance),
-        "at_limit": at_limit(dataset, unknowns.parameters),
+        **left_open(unknowns, covariance, list(limits)),
+        "at_limit": ", ".join(f"{name} ({limit})" for name, limit in limits.items()),
         "prior": json.dumps(unknowns.given.to_dict()),
     }
     dataset["gap"].attrs = {"long_name": "lowest excitation", "units": "meV"}
@@ -134,12 +135,13 @@ def evidence(observation: Observation, outcome: Outcome, X: FloatArray) -> dict[
     }
 
 
-def at_limit(result: xr.Dataset, parameters: Mapping[str, Distribution]) -> str:
-    """Return as words which parameters are where their prior ends, though they may be beyond.
+def at_limit(result: xr.Dataset, parameters: Mapping[str, Distribution]) -> dict[str, str]:
+    """Return the limits, as words, of parameters that are where their prior ends, by name.
 
-    Of those of which any value between two is as likely before, if they are known better than that.
+    Of those of which any value between two is as likely before, if they are known better than that
+    and may be beyond.
     """
-    said = []
+    said = {}
     for name, belief in parameters.items():
         if not isinstance(belief, Uniform):
             continue
@@ -148,18 +150,21 @@ def at_limit(result: xr.Dataset, parameters: Mapping[str, Distribution]) -> str:
         can_go_on = limit not in (BY_NAME[name].low, BY_NAME[name].high)
         is_known = std < KNOWN * (belief.high - belief.low)
         if can_go_on and is_known and abs(mean - limit) < NEAR_LIMIT * std:
-            said.append(f"{name} ({limit:g} {BY_NAME[name].unit}".rstrip() + ")")
-    return ", ".join(said)
+            said[name] = f"{limit:g} {BY_NAME[name].unit}".rstrip()
+    return said
 
 
-def left_open(unknowns: Unknowns, covariance: FloatArray) -> dict[str, str]:
+def left_open(
+    unknowns: Unknowns, covariance: FloatArray, at_limits: Sequence[str] = ()
+) -> dict[str, str]:
     """Return as words what the data do not fix, and what they do not tell apart.
 
-    not_fixed names unknowns; of the disorder's it says how many of their combinations. Both are
-    empty where there is nothing.
+    not_fixed names unknowns, but those at limits of the prior; of the disorder's it says how many
+    of their combinations. Both are empty where there is nothing.
     """
     n, std = unknowns.of_disorder, np.sqrt(np.diag(covariance))
-    not_fixed = [name for name, one in zip(unknowns.names[n:], std[n:], strict=True) if one > OPEN]
+    further = zip(unknowns.names[n:], std[n:], strict=True)
+    not_fixed = [name for name, one in further if one > OPEN and name not in at_limits]
     open_ways = int((np.linalg.eigvalsh(covariance[:n, :n]) > OPEN**2).sum())
     if open_ways:
         not_fixed.insert(0, f"{open_ways} of {n} combinations of the disorder's unknowns")

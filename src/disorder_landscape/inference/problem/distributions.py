@@ -125,6 +125,9 @@ def belief_of(name: str, given: object, low: float, high: float, unit: str) -> B
     if isinstance(given, tuple | list):
         pair = reals(name, given, must)
         require(pair.shape == (2,), name, must, f"it is {shown(given)}")
+        is_range = bool(np.isfinite(pair).all() and pair[0] < pair[1])
+        ordered = "have two finite numbers, the smaller one first, where it has two"
+        require(is_range, name, ordered, f"they are {pair[0]:g} and {pair[1]:g}")
         given = Uniform(*pair.tolist())
     if not isinstance(given, Uniform | Normal):
         try:
