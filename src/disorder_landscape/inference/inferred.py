@@ -70,11 +70,11 @@ def as_calibrated(result: xr.Dataset, measurement: Measurement) -> Measurement:
     must = f"be over {axis}, as that of the inversion was"
     require(measurement.axis == axis, "measurement", must, f"it is over {measurement.axis}")
     prior = prior_of_result(result)
-    for name, stated in measurement.stated.items():
-        known = prior.known.get(name, stated)
-        if name not in _stated(result):  # but temperature and barriers, which may be others
-            is_same = bool(np.isclose(stated, known))
-            require(is_same, name, f"be {known:g}, as in the inversion", f"it is {stated:g}")
+    of_the_wire = measurement.stated.keys() - measurement.settings.keys()
+    for name in sorted(of_the_wire & prior.known.keys()):
+        stated, known = measurement.stated[name], prior.known[name]
+        is_same = bool(np.isclose(stated, known))
+        require(is_same, name, f"be {known:g}, as in the inversion", f"it is {stated:g}")
     return _calibrated(result, prior, measurement, _means(result, prior))
 
 

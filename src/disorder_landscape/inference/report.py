@@ -190,7 +190,7 @@ def not_fixed_lines(result: xr.Dataset) -> list[str]:
         "not_told_apart": "They do not tell apart: ",
         "at_limit": "At a limit that the prior sets, which may be too narrow: ",
     }
-    return [f"{words}{text}." for name, words in said.items() if (text := result.attrs[name])]
+    return [f"{words}{text}." for name, words in said.items() if (text := result.attrs.get(name))]
 
 
 def summary(result: xr.Dataset) -> list[str]:
@@ -207,7 +207,7 @@ def summary(result: xr.Dataset) -> list[str]:
         lines.append(f"{name:14}  {parameter_with_std(result, name)}; before: {known}")
     if result.attrs["not_fixed"]:
         lines.append(f"not fixed       {result.attrs['not_fixed']}")
-    if result.attrs["at_limit"]:
+    if result.attrs.get("at_limit"):  # which results of older versions lack
         lines.append(f"at a limit      {result.attrs['at_limit']}: the prior may be too narrow")
     if result.attrs["not_told_apart"]:
         lines.append(f"not told apart  {result.attrs['not_told_apart']}")
