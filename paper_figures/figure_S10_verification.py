@@ -22,7 +22,7 @@ from command import Request, figure_script
 from disorder_landscape import Nanowire, conductance, verify
 from disorder_landscape.config import Config
 from disorder_landscape.inference.verification.comparison import scores
-from disorder_landscape.inference.verify import control_wires
+from disorder_landscape.inference.verification.controls import control_wires
 from disorder_landscape.model.disorder import MEAN_STD
 from disorder_landscape.model.quantities import CONDUCTANCES
 from plotting import (

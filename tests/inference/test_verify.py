@@ -11,7 +11,7 @@ import disorder_landscape as dl
 from disorder_landscape import ArgumentError, Nanowire, conductance
 from disorder_landscape.config import DatasetConfig, WireConfig
 from disorder_landscape.inference.verification.comparison import scores, table
-from disorder_landscape.inference.verify import control_wires, wires_like
+from disorder_landscape.inference.verification.controls import control_wires, wires_like
 from disorder_landscape.model.disorder import cosine_components
 from disorder_landscape.model.quantities import CONDUCTANCES
 

@@ -49,17 +49,19 @@ from disorder_landscape.inference.problem.observation import (
     noise_of_channels,
     stated_noise,
 )
-from disorder_landscape.inference.problem.prior import Prior
-from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.verification.comparison import (
     LEAST_SAMPLES,
     OF_CHANNELS,
     SIGNIFICANCE,
     comparison,
 )
+from disorder_landscape.inference.verification.controls import (
+    control_wires,
+    disorder_model,
+    wires_like,
+)
 from disorder_landscape.inference.verification.mismatch import SHIFTS, mean_squares, simulations
 from disorder_landscape.inference.verification.predictive import predictive_p
-from disorder_landscape.model.disorder import disorder_realization
 from disorder_landscape.model.parameters import PARAMETER_RANGES, FloatArray, Nanowire
 from disorder_landscape.observables.conductance import Progress
 
@@ -154,7 +156,7 @@ def verify(
     if config is None and _is_inversion(prediction):
         wires = [predicted, *wires_like(predicted, prior_of_result(prediction), controls, seed)]
     else:
-        model = _disorder_model(prediction, predicted, config)
+        model = disorder_model(prediction, predicted, config)
         controlled = [predicted, *control_wires(model, controls, seed)]
         wires = [replace(wire, lead_mu=model.wire.lead_mu) for wire in controlled]
     samples = _samples(prediction, stated_ones) if _is_inversion(prediction) else []
@@ -240,42 +242,3 @@ def _predicted_wire(prediction: xr.Dataset) -> Nanowire:
     return Nanowire(
         V.to_numpy(), alpha=number_in("alpha", alpha.to_numpy(), *PARAMETER_RANGES["alpha"])
     )
-
-
-def _disorder_model(
-    prediction: xr.Dataset, predicted: Nanowire, config: DatasetConfig | None
-) -> DatasetConfig:
-    """Return the disorder model that the prediction was made with."""
-    if config is None:
-        components = prediction.sizes.get("component", 0)
-        must = "hold the components, which define the disorder model"
-        require(components > 0, "prediction", must, "it lacks them")
-        but = f"it has {components}, and {predicted.sites} sites"
-        require(components < predicted.sites, "prediction", "have fewer components than sites", but)
-        return DatasetConfig(realizations=1, sites=predicted.sites, components=components)
-    must = "come from the model that is given"
-    made_by = prediction.attrs.get("config_hash", config.hash)
-    require(made_by == config.hash, "prediction", must, "it comes from another dataset's")
-    require(predicted.sites == config.sites, "prediction", must, f"it has {predicted.sites} sites")
-    return config
-
-
-def wires_like(wire: Nanowire, prior: Prior, count: int, seed: int = 0) -> list[Nanowire]:
-    """Return wires with random disorder and α of a prior, which are like this one in all else."""
-    unknowns, rng = Unknowns(prior), np.random.default_rng([seed, 3])
-    X = unknowns.prior.draw(rng, 2 * count)[:count]
-    both = zip(unknowns.potential(X), unknowns.parameter("alpha", X), strict=True)
-    return [replace(wire, potential=V, alpha=float(alpha)) for V, alpha in both]
-
-
-def control_wires(config: DatasetConfig, count: int, seed: int = 0) -> list[Nanowire]:
-    """Return wires with random disorder of a model, which are realizations of no dataset."""
-    wires = []
-    for index in range(count):
-        rng = np.random.default_rng([seed, index, 1])  # realizations are drawn from pairs
-        alpha = rng.uniform(*config.alpha_range)
-        V = disorder_realization(
-            rng, config.components, config.sites, config.correlation_length, config.amplitude
-        )[1]
-        wires.append(Nanowire(V, alpha=alpha))
-    return wires
