@@ -180,9 +180,13 @@ def test_no_gap_is_beyond_the_parents_in_a_field():
 
 @pytest.mark.parametrize("name", ["lead_g", "lead_alpha", "parent_dissipation"])
 def test_leads_and_parents_that_are_not_as_the_wire_are_refused(device, name):
-    prior = dl.Prior(1, 80, lever_arm=0.12, mu_offset=OFFSET)
-    with pytest.raises(ArgumentError, match=f"{name} must be the wire's .* the measurement's is 1"):
+    prior = dl.Prior(1, 80, 3.0, alpha=8, g=24, dissipation=0, lever_arm=0.12, mu_offset=OFFSET)
+    of_wire = {"lead_g": "g", "lead_alpha": "alpha", "parent_dissipation": "dissipation"}[name]
+    with pytest.raises(ArgumentError, match=f"{of_wire} must be .* the measurement states 1"):
         dl.infer(device[1].assign_attrs({name: 1.0}), prior, NOISE)
+    both = device[1].assign_attrs({name: 1.0, of_wire: 2.0})
+    with pytest.raises(ArgumentError, match=f"{name} must be the wire's .* the measurement's is 1"):
+        dl.infer(both, prior, NOISE)
 
 
 @pytest.mark.parametrize(

@@ -284,11 +284,31 @@ def test_settings_that_a_measurement_does_not_state_are_as_an_inversion_has_foun
         assert result["p_samples"] > 0.02
     with pytest.raises(ArgumentError, match=r"^Argument prediction .* settings is damaged\.$"):
         verify(found.assign_attrs(settings="[3]"), measured)
-    with pytest.raises(ArgumentError, match="g must be 25, as in the inversion, but it is 30"):
+    with pytest.raises(ArgumentError, match="g must be 25, as in the prior"):
         verify(
             found.assign_attrs(prior=json.dumps(replace(prior, g=25.0).to_dict())),
             measured.assign_attrs(g=30.0),
         )
+
+
+def test_settings_that_an_inverted_measurement_did_not_state_are_stated_by_others():
+    """… and taken, though they are the usual ones."""
+    prior = dl.Prior(COMPONENTS, SITES, alpha=(1, 20), temperature=0.1)
+    found = inversion_of(TRUE, np.zeros(60)).assign_attrs(
+        prior=json.dumps(prior.to_dict()), settings="{}"
+    )
+    for temperature, stated in ((0.05, True), (0.1, False)):
+        measured = measure(TRUE, temperature=temperature)
+        if not stated:
+            del measured.attrs["temperature"]
+        assert verify(found, measured, shifts=[0.0])["mismatch"].max() < 1e-9
+
+
+@pytest.mark.parametrize("name", ["mass", "lattice", "lead_mu"])
+def test_another_wire_than_the_inverted_one_is_refused(name):
+    found = inversion_of(TRUE, np.zeros(60))
+    with pytest.raises(ArgumentError, match=f"{name} must be .*, as in the prior"):
+        verify(found, measure(TRUE).assign_attrs({name: 9.0}))
 
 
 @pytest.mark.parametrize("axis", ["mu", "gate"])

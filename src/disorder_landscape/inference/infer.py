@@ -59,7 +59,6 @@ from disorder_landscape.learning.model import (
     load_model,
     load_model_config,
 )
-from disorder_landscape.model.quantities import CONDUCTANCES
 
 SAMPLES = 64
 SEARCH = 8
@@ -135,8 +134,10 @@ def infer(
         gap in meV. Attributes: verdict ("converged", "not converged" or "not described by the
         model"), excess (of χ² above its mean, in its standard deviations), log_evidence,
         effective_sample_size (of as many samples as are returned), attempts, rounds, start, noise,
-        prior and settings (as JSON: what is known and not, and what the measurement stated), and
-        each known parameter. With gate instead of mu dims are named so.
+        prior and settings (as JSON: what is known and not, and the temperature and barriers that
+        the measurement stated), each known parameter, not_fixed, not_told_apart and at_limit: what
+        the data leave open, and what is where the prior ends. With gate instead of mu dims are
+        named so.
 
     Raises
     ------
@@ -185,7 +186,7 @@ def infer(
         "start": start,
         "noise": observation.noise,
         "theta": observation.measurement.theta,
-        "settings": json.dumps(observation.measurement.settings),
+        "settings": json.dumps(observation.measurement.stated_settings),
     }
     if isinstance(known, DatasetConfig):
         result.attrs["config_hash"] = known.hash
@@ -219,9 +220,7 @@ def observation_of(
         config = prior if isinstance(prior, DatasetConfig) else _config_of(prior)
         usual, known = settings_of(config), Prior.of_dataset(config)
     measurement = measurement_of(G, usual)
-    if isinstance(noise, Mapping):  # of channels that are not there none needs to be known
-        noise = {name: noise.get(name, 0.0) for name in CONDUCTANCES if name not in G} | dict(noise)
-    errors = noise_of_channels(stated_noise(G.attrs) if noise is None else noise)
+    errors = noise_of_channels(stated_noise(G.attrs) if noise is None else noise, G)
     return Observation(measurement, Unknowns(known.for_measurement(measurement)), errors)
 
 
@@ -236,7 +235,7 @@ def _config_of(model: Model) -> DatasetConfig:
     if isinstance(model, TrainedModel):
         return model.config.dataset
     is_path = isinstance(model, str | Path)
-    must = "be a Prior, or the folder of a trained model"
+    must = "be a Prior, its file (.toml), or the folder of a trained model"
     require(is_path, "prior", must, f"it is {shown(model)}")
     return load_model_config(existing_folder(model)).dataset
 
@@ -258,7 +257,9 @@ def _network(
     sites, of_network = observation.unknowns.given.sites, _config_of(model).sites
     must = f"be of wires of {sites} sites, as the prior is"
     require(of_network == sites, "network", must, f"it is of {of_network}")
-    if not _on_grid_of_network(_config_of(model), observation).is_measured.all():
+    config, empty = _config_of(model), observation.measurement.left_out
+    lacks = bool(np.isin(config.bias, empty).any())
+    if lacks or not _on_grid_of_network(config, observation).is_measured.all():
         why = "because the network needs all conductances of its grid and some are missing"
         return None, f"the prior, {why}"
     must = "be none where V of every site is unknown"

@@ -10,9 +10,9 @@ import numpy as np
 import xarray as xr
 
 from disorder_landscape.arguments import ArgumentError, number_in, reals, require
-from disorder_landscape.inference.problem.measurement import Measurement
+from disorder_landscape.inference.problem.measurement import PAPERS_SETTINGS, Measurement
 from disorder_landscape.inference.problem.parameters import PARAMETERS, Setup, nanowire
-from disorder_landscape.inference.problem.prior import FIXED, Prior
+from disorder_landscape.inference.problem.prior import FIXED, Prior, check_agreement
 from disorder_landscape.model.parameters import FloatArray, Nanowire
 
 MUST = "be a result of infer"
@@ -43,62 +43,59 @@ def sample_wires(result: xr.Dataset) -> list[Nanowire]:
     return [_wire(prior, V, values) for V, values in each]
 
 
-def settings_of_result(result: xr.Dataset) -> dict[str, object]:
-    """Return the settings that the measurement stated which was inverted; θ is as it was."""
-    stated = _stated(result)
-    settings: dict[str, object] = {"theta": result.attrs.get("theta", 0.0)}
-    if stated:
-        barrier = (stated["barrier_left"], stated["barrier_right"])
-        settings |= {"temperature": stated["temperature"], "barrier": barrier}
-    return settings
+def usual_settings_of(result: xr.Dataset) -> dict[str, object]:
+    """Return settings where a measurement states none: θ of the inversion, and what it replaces."""
+    return {**PAPERS_SETTINGS, "theta": result.attrs.get("theta", 0.0)}
 
 
 def as_calibrated(result: xr.Dataset, measurement: Measurement) -> Measurement:
     """Return a measurement of the same device at the settings that it has in truth.
 
-    μ and biases are as lever arm and offsets have it; and where a temperature or a barrier is
-    stated as it was for the inversion, it is what the inversion has found. Others are the
+    μ and biases are as lever arm and offsets have it. A temperature or a barrier that is not
+    stated, or stated as it was for the inversion, is what the inversion has found. Others are the
     measurement's own.
 
     Raises
     ------
     ArgumentError
         If the result is over a gate voltage and the measurement over μ, or the other way round, or
-        if it states another value of what the prior knows.
+        if it states what the prior excludes.
     """
     axis = "gate" if "gate" in result.dims else "mu"
     must = f"be over {axis}, as that of the inversion was"
     require(measurement.axis == axis, "measurement", must, f"it is over {measurement.axis}")
     prior = prior_of_result(result)
-    of_the_wire = measurement.stated.keys() - measurement.settings.keys()
-    for name in sorted(of_the_wire & prior.known.keys()):
-        stated, known = measurement.stated[name], prior.known[name]
-        is_same = bool(np.isclose(stated, known))
-        require(is_same, name, f"be {known:g}, as in the inversion", f"it is {stated:g}")
-    return _calibrated(result, prior, measurement, _means(result, prior))
+    for name in sorted(measurement.stated.keys() - measurement.settings.keys()):
+        check_agreement(name, getattr(prior, name), measurement.stated[name])
+    return _calibrated(prior, _means(result, prior), measurement, _stated(result))
 
 
 def as_calibrated_by_samples(result: xr.Dataset, measurement: Measurement) -> list[Measurement]:
     """Return a measurement at the settings that it has according to each sample."""
-    prior = prior_of_result(result)
-    return [_calibrated(result, prior, measurement, one) for one in _samples(result, prior)]
+    prior, stated = prior_of_result(result), _stated(result)
+    return [_calibrated(prior, one, measurement, stated) for one in _samples(result, prior)]
 
 
 def _calibrated(
-    result: xr.Dataset, prior: Prior, measurement: Measurement, unknown: Mapping[str, float]
+    prior: Prior,
+    unknown: Mapping[str, float],
+    measurement: Measurement,
+    stated_before: Mapping[str, float],
 ) -> Measurement:
-    setup, stated, here = Setup(measurement.mu, measurement.bias), _stated(result), {}
+    setup = Setup(measurement.mu, measurement.bias)
     _enter(prior, setup, unknown)
-    found = {"temperature": setup.temperature}
-    found["barrier_left"], found["barrier_right"] = setup.barrier
-    for name, own in measurement.settings.items():
-        here[name] = found[name] if np.isclose(own, stated.get(name, np.nan)) else own
+    at = {"temperature": setup.temperature}
+    at["barrier_left"], at["barrier_right"] = setup.barrier
+    for name in measurement.settings.keys() & measurement.stated.keys():
+        own = measurement.stated[name]
+        if not np.isclose(own, stated_before.get(name, np.nan)):
+            at[name] = own
     return replace(
         measurement,
         mu=setup.mu,
         bias=setup.bias,
-        temperature=here["temperature"],
-        barrier=(here["barrier_left"], here["barrier_right"]),
+        temperature=at["temperature"],
+        barrier=(at["barrier_left"], at["barrier_right"]),
         axis="mu",
     )
 

@@ -90,13 +90,13 @@ def invert(
     seeds = [seed, 2**31 + 2]
     if observation.unknowns.is_whole_landscape:
         optima, attempts = optima_of_whole_landscape(observation, steps, seed, cache)
-        optima.look_at_mirror_image(attempts - 1)
+        optima.look_at_mirror_images(attempts - 1)
         return _outcome(observation, optima, attempts, 0, seeds, progress, cache)
     found = _starts_of_few_unknowns(observation, model, steps, seed, settings, progress, cache)
     starts, attempts, rounds = found
     optima = starts.optima
-    optima.look_at_mirror_image(attempts - 1)
     while True:
+        optima.look_at_mirror_images(attempts - 1)
         outcome = _outcome(observation, optima, attempts, rounds, seeds, progress, cache)
         is_enough = verdict(observation, outcome) == CONVERGED or not optima.is_wide
         if is_enough or optima.starts >= MOST_STARTS:

@@ -165,7 +165,8 @@ def _misfit(panel: Any, result: xr.Dataset) -> None:
         panel.plot(position, errors, "_", color="C3", ms=18, label="and discrepancy")
     names = [rf"$G_\mathrm{{{name[2:]}}}$" for name in CONDUCTANCES]
     panel.set_xticks(position, names)
-    largest = max(result["misfit"].max(), np.max(result.attrs["noise"]))
+    largest = max(np.nanmax(line.get_ydata()) for line in panel.lines)
+    largest = max(float(result["misfit"].max()), largest)
     panel.set(ylabel="r.m.s. [$e^2/h$]", ylim=(0, 1.5 * largest or None), xlim=(-0.6, 3.6))
     narrow = {"handlelength": 1.0, "columnspacing": 1.0, "handletextpad": 0.4, "markerscale": 0.6}
     panel.legend(frameon=False, ncols=3, loc="upper center", **narrow)

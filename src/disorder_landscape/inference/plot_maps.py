@@ -105,10 +105,9 @@ def draw_maps(
     }
     _row_of_maps(figure, panels, shown)
     along, upward = np.meshgrid(measurement.B, measurement.mu)
-    if measurement.mu.size == 1:
-        upward = np.full_like(upward, BELOW)
-    elif measurement.B.size == 1:
-        along, upward = upward, np.full_like(along, BELOW)
+    if 1 in along.shape:
+        along = data[_axis_of_curve(data)]
+        upward = np.full_like(along, BELOW)
     panels["P"].plot(along.ravel(), upward.ravel(), ".", color="0.4", ms=0.6)
 
 
@@ -124,13 +123,19 @@ def _row_of_maps(figure: Any, panels: Mapping[str, Any], shown: Mapping[str, Sho
             panel.set_ylabel("" if column else _label(upward))
             figure.colorbar(image, ax=panel, label=one.unit, location="bottom", aspect=20)
         else:
-            along = along if one.grid[along].size > 1 else upward
+            along = _axis_of_curve(one.grid)
             panel.plot(one.grid[along], one.values.ravel(), "k.-", lw=0.8, ms=2)
             panel.set_ylabel(one.unit)
             if one.options is not RESIDUAL:
                 low, high = one.options["vmin"], one.options["vmax"]
                 panel.set_ylim(low - 0.05 * (high - low), high + 0.05 * (high - low))
         panel.set_xlabel(_label(along))
+
+
+def _axis_of_curve(grid: Mapping[str, FloatArray]) -> str:
+    """Return which of two axes, one of which has one value, a curve is over."""
+    upward, along = grid
+    return along if grid[along].size > 1 else upward
 
 
 def _label(axis: str) -> str:

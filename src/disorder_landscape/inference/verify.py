@@ -36,7 +36,7 @@ from disorder_landscape.inference.inferred import (
     mean_wire,
     prior_of_result,
     sample_wires,
-    settings_of_result,
+    usual_settings_of,
 )
 from disorder_landscape.inference.problem.measurement import (
     Measurement,
@@ -139,7 +139,7 @@ def verify(
     known = config is None or isinstance(config, DatasetConfig)
     require(known, "config", "be a DatasetConfig", f"it is {shown(config)}")
     if _is_inversion(prediction):
-        usual = settings_of_result(prediction)
+        usual = usual_settings_of(prediction)
         stated_ones = [measurement_of(one, usual) for one in given]
         measured = [as_calibrated(prediction, one) for one in stated_ones]
     else:
@@ -148,7 +148,8 @@ def verify(
             check_wire(measurement)
     there = np.array([np.isfinite(m.G).any(axis=(0, 1, 2)) for m in measured])
     stated = [stated_noise(dataset.attrs, 0.0) if noise is None else noise for dataset in given]
-    errors = np.where(there, [noise_of_channels(one) for one in stated], NOT_MEASURED)
+    noises = [noise_of_channels(one, of) for one, of in zip(stated, given, strict=True)]
+    errors = np.where(there, noises, NOT_MEASURED)
     controls = whole_number_in("controls", controls, round(1 / SIGNIFICANCE) - 1, 10_000)
     seed = whole_number_in("seed", seed, 0, 2**63)
     tried = grid_in("shifts", shifts, -1.0, 1.0, "meV")

@@ -66,12 +66,19 @@ class Measurement:
     """What the first axis is: μ in meV, or "gate", a voltage in any unit."""
     stated: Mapping[str, float] = field(default_factory=dict)
     """What it says of the device: parameters by name, barriers each by its own."""
+    left_out: FloatArray = field(default_factory=lambda: np.empty(0))
+    """Biases at which nothing was measured."""
 
     @property
     def settings(self) -> dict[str, float]:
         """Temperature and barriers by name, as stated or as usual."""
         left, right = self.barrier
         return {"temperature": self.temperature, "barrier_left": left, "barrier_right": right}
+
+    @property
+    def stated_settings(self) -> dict[str, float]:
+        """Those of them that are stated."""
+        return {name: self.stated[name] for name in self.settings if name in self.stated}
 
 
 def settings_of(config: DatasetConfig) -> dict[str, Any]:
@@ -143,12 +150,13 @@ def measurement_of(dataset: xr.Dataset, usual: Mapping[str, object] | None = Non
         require(is_axis, name, "be numbers along their own dimension", "it is something else")
     dataset = dataset.sortby(list(AXES))
     G = _checked_conductances(dataset, given)
-    there = np.isfinite(G).any(axis=(0, 1, 3))
+    there, bias = np.isfinite(G).any(axis=(0, 1, 3)), _axis(dataset, "bias", 1e3)
     return Measurement(
         G=G[:, :, there],
         mu=_axis(dataset, "mu", 1e3 if axis == "mu" else 1e6),
         B=_axis(dataset, "B", 100.0),
-        bias=_axis(dataset, "bias", 1e3)[there],
+        bias=bias[there],
+        left_out=bias[~there],
         theta=number_in("theta", settings["theta"], -FULL_TURN, FULL_TURN, "radians"),
         barrier=_two_barriers(settings["barrier"]),
         temperature=checked_temperature(settings["temperature"]),
@@ -167,7 +175,7 @@ def _stated(attrs: Mapping[Any, object]) -> dict[str, float]:
     for name, of_wire in AS_THE_WIRE.items():
         if name in attrs:
             own = number_in(name, attrs[name], *PARAMETER_RANGES[name])
-            same = stated.get(of_wire, getattr(Nanowire, of_wire))
+            same = stated.setdefault(of_wire, own)
             must = f"be the wire's {of_wire}, {same:g}, as in every inversion"
             require(bool(np.isclose(own, same)), name, must, f"the measurement's is {own:g}")
     if "temperature" in attrs:
@@ -196,7 +204,8 @@ def check_wire(measurement: Measurement) -> None:
 
 def with_axes(dataset: xr.Dataset) -> xr.Dataset:
     """Return a dataset in which axes that are scalar coordinates have a dim of their own."""
-    scalars = [name for name in ("gate", *AXES) if name in dataset.coords]
+    names = AXES if "mu" in dataset.coords else ("gate", *AXES[1:])
+    scalars = [name for name in names if name in dataset.coords]
     return dataset.expand_dims([name for name in scalars if dataset[name].ndim == 0])
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -246,8 +246,12 @@ def one_or_each(noise: list[float]) -> float | dict[str, float]:
     return noise[0] if len(noise) == 1 else dict(zip(CONDUCTANCES, noise, strict=True))
 
 
-def noise_of_channels(noise: float | Mapping[str, float]) -> FloatArray:
+def noise_of_channels(
+    noise: float | Mapping[str, float], measured: Container[Any] = CONDUCTANCES
+) -> FloatArray:
     """Return the standard deviation of each channel's errors in e²/h, shape (channel,).
+
+    Where each has its own, those that were not measured need none.
 
     Raises
     ------
@@ -258,5 +262,6 @@ def noise_of_channels(noise: float | Mapping[str, float]) -> FloatArray:
         return np.full(len(CONDUCTANCES), number_in("noise", noise, 0.0, 1.0, "e²/h"))
     must = f"be one number, or one for each of {', '.join(CONDUCTANCES)}"
     but = f"it is for {', '.join(map(str, noise))}"
+    noise = {name: 0.0 for name in CONDUCTANCES if name not in measured} | dict(noise)
     require(set(noise) == set(CONDUCTANCES), "noise", must, but)
     return np.array([number_in("noise", noise[name], 0.0, 1.0, "e²/h") for name in CONDUCTANCES])

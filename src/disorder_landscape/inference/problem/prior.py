@@ -163,7 +163,7 @@ class Prior:
             If both say different things, or biases may lie beyond the gap.
         """
         for name in FIXED:
-            _check_agreement(name, getattr(self, name), measurement.stated.get(name))
+            check_agreement(name, getattr(self, name), measurement.stated.get(name))
         if measurement.axis == "gate":
             must = "say a lever arm, in meV per unit of the measurement's gate"
             require(self.lever_arm is not None, "prior", must, "it says none")
@@ -175,7 +175,7 @@ class Prior:
             if belief is None:
                 said[name] = belief_of(name, value if stated is None else stated, *_range(name))
             else:
-                _check_agreement(name, belief, stated)
+                check_agreement(name, belief, stated)
         whole = replace(self, **said)
         whole._check_biases(measurement)
         return whole
@@ -254,7 +254,7 @@ def _range(name: str) -> tuple[float, float, str]:
     return one.low, one.high, one.unit
 
 
-def _check_agreement(name: str, belief: Belief, stated: float | None) -> None:
+def check_agreement(name: str, belief: Belief, stated: float | None) -> None:
     """Require that prior and measurement do not say different things of a parameter."""
     if stated is None:
         return

@@ -43,7 +43,8 @@ def without_series_resistance(measured: xr.Dataset, left: float, right: float) -
     Returns
     -------
     Dataset
-        The same with other conductances, its axes in increasing order.
+        The same with other conductances, its axes in increasing order; without biases at which
+        nothing was measured, and without the simulation's error. Its attribute noise stays.
 
     Raises
     ------
@@ -62,7 +63,7 @@ def without_series_resistance(measured: xr.Dataset, left: float, right: float) -
     require(bool((left_over.real > 0).all()), "left and right", must, but)
     G = np.where(np.isnan(measurement.G), np.nan, in_series(away, G))
     axes = {measurement.axis: measurement.mu, "B": measurement.B, "bias": measurement.bias}
-    whole: xr.Dataset = with_axes(measured).sel(axes)
+    whole: xr.Dataset = with_axes(measured).sel(axes).drop_vars("error", errors="ignore")
     there = [(k, name) for k, name in enumerate(CONDUCTANCES) if name in measured]
     return whole.assign({name: (list(axes), G[..., k], whole[name].attrs) for k, name in there})
 

@@ -27,7 +27,7 @@ from disorder_landscape.inference.optimum import (
 )
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.observation import Observation
-from disorder_landscape.inference.search.gauss_newton import Goal
+from disorder_landscape.inference.search.gauss_newton import Goal, is_near
 from disorder_landscape.inference.verdict import UNSEEN, is_surely_right
 from disorder_landscape.model.parameters import FloatArray
 
@@ -37,7 +37,7 @@ fits is right all but surely, and otherwise. (Of thirteen such wires without noi
 4 µeV off and fitted.)"""
 WIDE = 4.3e-3
 """The posterior may have several maxima if the noise may hide them and V is uncertain by more than
-this in meV, at any temperature: conductances are as straight across it at 300 mK as at 50. …"""
+this in meV, whatever kT is: conductances are as straight across it at 300 mK as at 50. …"""
 SEVERAL = 0.1
 """… So may it if optima beside the best one hold more than this share of it. …"""
 STARTS_WHEN_WIDE = 16, 64
@@ -133,22 +133,25 @@ class Optima:
             add(observation, found, optimum_at(observation, answer, one.found_by))
         return replace(self, observation=observation, found=found)
 
-    def look_at_mirror_image(self, attempt: int) -> None:
-        """Add the optimum at the mirror image of the best one, if that explains the data, too.
+    def look_at_mirror_images(self, attempt: int) -> None:
+        """Add the optima at mirror images of those that have a share, if they explain the data too.
 
         Data may be those of both, as nonlocal conductances without a bias are, and no start need
-        come near it. It is found by as many starts as the best one is.
+        come near an image. It is found by as many starts as its original is.
         """
         if not self.fits:
             return
-        chosen, observation = best(self.found), self.observation
-        x = observation.unknowns.mirrored(chosen.answer.mean)
-        if not is_noise(chi_square_excess(observation, observation.simulate(x[None])[0])):
-            return
-        end = self.steps(observation, x, attempt, "mirror", (), "optimum")
-        image = optimum_at(observation, end, chosen.found_by)
-        if not same_answer(observation, chosen, image):
-            add(observation, self.found, image)
+        observation, share = self.observation, shares(self.found)
+        for k, one in enumerate(list(self.found)):
+            x = observation.unknowns.mirrored(one.answer.mean)
+            if share[k] < NEGLIGIBLE or any(is_near(other, x) for other in self.found):
+                continue
+            if not is_noise(chi_square_excess(observation, observation.simulate(x[None])[0])):
+                continue
+            end = self.steps(observation, x, attempt, f"{self.starts}.mirror.{k}", (), "optimum")
+            image = optimum_at(observation, end, one.found_by)
+            if not any(same_answer(observation, other, image) for other in self.found):
+                self.found.append(image)
 
     def found_again(self, k: int, attempt: int) -> None:
         """Note that another start leads to this one of those found."""
