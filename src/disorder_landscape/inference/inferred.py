@@ -66,7 +66,8 @@ def as_calibrated(result: xr.Dataset, measurement: Measurement) -> Measurement:
     require(measurement.axis == axis, "measurement", must, f"it is over {measurement.axis}")
     prior = prior_of_result(result)
     for name in sorted(measurement.stated.keys() - measurement.settings.keys()):
-        check_agreement(name, getattr(prior, name), measurement.stated[name])
+        if (belief := getattr(prior, name)) is not None:
+            check_agreement(name, belief, measurement.stated[name])
     return _calibrated(prior, _means(result, prior), measurement, _stated(result))
 
 
