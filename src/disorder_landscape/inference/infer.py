@@ -254,11 +254,10 @@ def _network(
         model = prior
     else:
         model = network
-    sites, of_network = observation.unknowns.given.sites, _config_of(model).sites
+    config, sites = _config_of(model), observation.unknowns.given.sites
     must = f"be of wires of {sites} sites, as the prior is"
-    require(of_network == sites, "network", must, f"it is of {of_network}")
-    config, empty = _config_of(model), observation.measurement.left_out
-    lacks = bool(np.isin(config.bias, empty).any())
+    require(config.sites == sites, "network", must, f"it is of {config.sites}")
+    lacks = bool(np.isin(config.bias, observation.measurement.left_out).any())
     if lacks or not _on_grid_of_network(config, observation).is_measured.all():
         why = "because the network needs all conductances of its grid and some are missing"
         return None, f"the prior, {why}"

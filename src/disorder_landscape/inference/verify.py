@@ -51,7 +51,6 @@ from disorder_landscape.inference.problem.observation import (
 )
 from disorder_landscape.inference.verification.comparison import (
     LEAST_SAMPLES,
-    OF_CHANNELS,
     SIGNIFICANCE,
     comparison,
 )
@@ -66,8 +65,6 @@ from disorder_landscape.model.parameters import PARAMETER_RANGES, FloatArray, Na
 from disorder_landscape.observables.conductance import Progress
 
 CONTROLS = 50
-NOT_MEASURED = 1e3
-"""Noise in e²/h of channels that were not measured: they have no weight."""
 
 
 def verify(
@@ -149,7 +146,7 @@ def verify(
     there = np.array([np.isfinite(m.G).any(axis=(0, 1, 2)) for m in measured])
     stated = [stated_noise(dataset.attrs, 0.0) if noise is None else noise for dataset in given]
     noises = [noise_of_channels(one, of) for one, of in zip(stated, given, strict=True)]
-    errors = np.where(there, noises, NOT_MEASURED)
+    errors = np.where(there, noises, np.nan)
     controls = whole_number_in("controls", controls, round(1 / SIGNIFICANCE) - 1, 10_000)
     seed = whole_number_in("seed", seed, 0, 2**63)
     tried = grid_in("shifts", shifts, -1.0, 1.0, "meV")
@@ -170,8 +167,6 @@ def verify(
 
     squares, shift = mean_squares(wires, measured, tried, errors, report)
     result = comparison(np.sqrt(squares), shift, errors)
-    for name in OF_CHANNELS:
-        result[name] = result[name].where(xr.DataArray(there, dims=("measurement", "channel")))
     if _is_inversion(prediction):
         p = _p_of_samples(samples, measured, errors, np.random.default_rng([seed, 2]), report)
         result["p_samples"] = ((), p, {"units": "1"})

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from decimal import Decimal
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
@@ -16,12 +15,10 @@ import pandas as pd
 from pydantic import Field
 
 from disorder_landscape.config import Positive
-from disorder_landscape.inference.infer import SAMPLES
 from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.problem.unknowns import Unknowns
-from disorder_landscape.inference.result import evidence
 from disorder_landscape.studies.drawn_devices import Grid, drawn_device, measured_device, seed_of
-from disorder_landscape.studies.fresh_wires import Noise, inverted
+from disorder_landscape.studies.fresh_wires import Noise, inverted, log_evidence
 from disorder_landscape.studies.rows import Row, numbers, rounded
 from disorder_landscape.studies.study import Derived, Place, Plan, by_name
 
@@ -99,14 +96,13 @@ def rows_of(task: Task, group: Group) -> list[dict[str, object]]:
     for name in group.priors:
         observation = replace(measured, unknowns=group.unknowns(name))
         answer = inverted(observation, None, task.index)
-        X = answer.found.draw(np.random.default_rng([*seed, 2]), SAMPLES)
-        log_evidence = evidence(observation, answer.found, X)["log_evidence"]
+        rng = np.random.default_rng([*seed, 2])
         outcome: dict[str, object] = {
             "group": task.group,
             "truth": task.truth,
             "index": task.index,
             "prior": name,
-            "log_evidence": Decimal(f"{log_evidence:.2f}"),
+            "log_evidence": log_evidence(observation, answer.found, rng),
             **{key: answer.outcome[key] for key in ("excess", "verdict", "seconds")},
         }
         rows.append(rounded(outcome))

@@ -9,6 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from decimal import Decimal
 from functools import lru_cache, partial
 from pathlib import Path
 from typing import Annotated, ClassVar
@@ -20,6 +21,7 @@ from pydantic import AfterValidator, Field
 from disorder_landscape.chain import MODELS, shipped_model
 from disorder_landscape.config import DatasetConfig, Positive
 from disorder_landscape.dataset.realizations import realization
+from disorder_landscape.inference.infer import SAMPLES
 from disorder_landscape.inference.invert import invert
 from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.problem.gaussian import Gaussian
@@ -30,6 +32,7 @@ from disorder_landscape.inference.problem.observation import (
     objective,
 )
 from disorder_landscape.inference.problem.unknowns import unknowns_of
+from disorder_landscape.inference.result import evidence
 from disorder_landscape.inference.verdict import verdict
 from disorder_landscape.learning.model import TrainedModel, load_model
 from disorder_landscape.model.parameters import FloatArray, Nanowire
@@ -169,6 +172,12 @@ def inverted(observation: Observation, network: TrainedModel | None, seed: int) 
         "seconds": seconds,
     }
     return Inverted(found, outcome)
+
+
+def log_evidence(observation: Observation, found: Outcome, rng: np.random.Generator) -> Decimal:
+    """Return that of an answer, with two digits after the point."""
+    X = found.draw(rng, SAMPLES)
+    return Decimal(f"{evidence(observation, found, X)['log_evidence']:.2f}")
 
 
 def more_probable(observation: Observation, found: Outcome, truth: FloatArray) -> float:

@@ -8,24 +8,22 @@ Seeds differ: each start has attempts of its own.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from decimal import Decimal
 from typing import Literal
 
 import numpy as np
 import pandas as pd
 
-from disorder_landscape.inference.infer import SAMPLES
 from disorder_landscape.inference.optimum import same_answer
 from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.posterior.samples import posterior_shares
 from disorder_landscape.inference.problem.observation import Observation
-from disorder_landscape.inference.result import evidence
 from disorder_landscape.inference.verdict import CONVERGED
 from disorder_landscape.studies.fresh_wires import (
     FreshWiresPlan,
     Task,
     fresh_wire,
     inverted,
+    log_evidence,
     network_of,
 )
 from disorder_landscape.studies.rows import Row, numbers, rounded
@@ -61,9 +59,8 @@ class StartsPlan(FreshWiresPlan):
         row["weights_apart"] = weights_apart(observation, *(one.found for one in found))
         for start, one in zip(STARTS, found, strict=True):
             row[f"{start}_error"] = distance(one.answer.mean, truth)
-            X = one.found.draw(np.random.default_rng([task.index, 6]), SAMPLES)
-            log_evidence = evidence(observation, one.found, X)["log_evidence"]
-            row[f"{start}_log_evidence"] = Decimal(f"{log_evidence:.2f}")
+            rng = np.random.default_rng([task.index, 6])
+            row[f"{start}_log_evidence"] = log_evidence(observation, one.found, rng)
             row |= {f"{start}_{name}": value for name, value in one.outcome.items()}
         return [rounded(row)]
 
@@ -99,11 +96,11 @@ def summary(table: pd.DataFrame) -> dict[str, object]:
     their log evidence, and of the weights of optima: the median and the most.
     """
     bars = table[[f"{start}_spread" for start in STARTS]].mean(axis=1)
-    log_evidence = table["network_log_evidence"] - table["prior_log_evidence"]
+    apart = table["network_log_evidence"] - table["prior_log_evidence"]
     both = table[[f"{start}_verdict" for start in STARTS]].eq(CONVERGED).all(axis=1)
     differences = {
         "apart_in_bars": table["apart"] / bars,
-        "log_evidence_apart": abs(log_evidence),
+        "log_evidence_apart": abs(apart),
         "weights_apart": table["weights_apart"],
     }
     found: dict[str, object] = {"wires": len(table), "both_converged": int(both.sum())}

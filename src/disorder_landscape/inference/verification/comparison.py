@@ -22,8 +22,12 @@ _TINY = np.finfo(float).tiny
 
 
 def weights(typical: FloatArray, noise: FloatArray) -> FloatArray:
-    """Return the share of typical mismatches that is not noise, shape (measurement, channel)."""
-    return np.asarray(np.clip(1 - (noise / np.maximum(typical, _TINY)) ** 2, 0.0, 1.0))
+    """Return the share of typical mismatches that is not noise, shape (measurement, channel).
+
+    None where nothing was measured.
+    """
+    share = np.clip(1 - (noise / np.maximum(typical, _TINY)) ** 2, 0.0, 1.0)
+    return np.where(np.isnan(share), 0.0, share)
 
 
 def scores(squares: FloatArray, typical: FloatArray, noise: FloatArray) -> FloatArray:
@@ -32,7 +36,7 @@ def scores(squares: FloatArray, typical: FloatArray, noise: FloatArray) -> Float
     Parameters
     ----------
     squares : array, shape (…, measurement, channel)
-        Squared mismatches in (e²/h)².
+        Squared mismatches in (e²/h)², NaN where nothing was measured.
     typical : array, shape (measurement, channel)
         Mismatches of wrong disorder in e²/h.
     noise : array, shape (measurement, channel)
@@ -44,7 +48,8 @@ def scores(squares: FloatArray, typical: FloatArray, noise: FloatArray) -> Float
     """
     weight = weights(typical, noise)
     relative = squares / np.maximum(typical, _TINY) ** 2
-    return np.asarray(np.sqrt((relative * weight).sum((-2, -1)) / max(weight.sum(), _TINY)))
+    weighted = np.nansum(relative * weight, axis=(-2, -1))
+    return np.asarray(np.sqrt(weighted / max(weight.sum(), _TINY)))
 
 
 def comparison(mismatch: FloatArray, shift: FloatArray, noise: FloatArray) -> xr.Dataset:

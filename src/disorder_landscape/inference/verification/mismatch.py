@@ -24,8 +24,6 @@ from disorder_landscape.observables.conductance import conductance
 
 SHIFTS = np.linspace(-3 * MEAN_STD, 3 * MEAN_STD, 13)
 """Means of V in meV that are tried; the steps are about kT."""
-NOTHING = 1.0
-"""In (e²/h)²: of channels that were not measured, whose noise leaves them no weight."""
 FINER = np.linspace(-0.8, 0.8, 9)
 """Then those around the best of them, in units of the step: conductances change within kT."""
 
@@ -61,7 +59,7 @@ def mean_squares(
     Returns
     -------
     array, shape (wire, measurement, channel)
-        In (e²/h)²; NOTHING where nothing was measured.
+        In (e²/h)², NaN where nothing was measured.
     array, shape (wire,)
         In meV.
     """
@@ -110,6 +108,6 @@ def _of_wire(
         for c, name in enumerate(CONDUCTANCES):
             simulated = found[name].to_numpy()[back.reshape(shifted.shape)]
             off = (simulated - m.G[..., c])[:, np.isfinite(m.G[..., c])]
-            squares[:, i, c] = (off**2).mean(axis=1) if off.size else NOTHING
+            squares[:, i, c] = (off**2).mean(axis=1) if off.size else np.nan
         progress(shifted.size * m.B.size)
     return squares
