@@ -4,26 +4,25 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 import xarray as xr
 
+from disorder_landscape.inference.maps import (
+    fine_grids,
+    gap_energies,
+    gap_probability,
+    visibility,
+)
 from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.posterior.importance_sampling import weighted_samples
 from disorder_landscape.inference.problem.distributions import Distribution, Uniform
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.problem.parameters import BY_NAME
-from disorder_landscape.inference.problem.unknowns import Device, Unknowns, share_settings
-from disorder_landscape.model.parameters import FloatArray, gap_in_field
+from disorder_landscape.inference.problem.unknowns import Unknowns
+from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.model.quantities import AXES, CONDUCTANCES, with_units
-from disorder_landscape.observables.visibility import topological_visibility
-from disorder_landscape.solver import routes
 
-MAP_POINTS = 61, 81
-"""Of the maps of T_IV and P(topological), along μ and B."""
-GAPS = 49
-"""Energies from zero to the gap of the parent for which P_gap is given."""
 OPEN = 0.8
 """An unknown is not fixed whose standard deviation is more than this share of the prior's."""
 ALIKE = 0.95
@@ -42,10 +41,10 @@ def result_of(observation: Observation, outcome: Outcome, samples: int, seed: in
     answer = outcome.answer
     mean, covariance = answer.mean, answer.covariance
     X = outcome.draw(np.random.default_rng([seed, 2**31 + 1]), samples)
-    maps = _maps(m.mu, m.B)
-    T_IV = _visibility(observation, np.concatenate([mean[None], X]), maps)
+    maps = fine_grids(m.mu, m.B)
+    T_IV = visibility(observation, np.concatenate([mean[None], X]), maps)
     G = observation.conductances(outcome.best.answer.mean[None])[0]
-    grid, gaps = ("map_mu", "map_B"), _gap_energies(observation)
+    grid, gaps = ("map_mu", "map_B"), gap_energies(observation)
     data = {
         "potential": (("sample", "site"), unknowns.potential(X)),
         "potential_mean": ("site", unknowns.potential(mean)),
@@ -54,7 +53,7 @@ def result_of(observation: Observation, outcome: Outcome, samples: int, seed: in
         **{name: (AXES, G[..., c]) for c, name in enumerate(CONDUCTANCES)},
         "T_IV": (("lead", *grid), T_IV[0]),
         "P_topological": (grid, (T_IV[1:, 0] < 0).mean(axis=0)),
-        "P_gap": (("gap", *AXES[:2]), _gap_probability(observation, X, gaps)),
+        "P_gap": (("gap", *AXES[:2]), gap_probability(observation, X, gaps)),
     }
     coords = {
         "site": np.arange(unknowns.given.sites),
@@ -176,59 +175,3 @@ def left_open(
         if i < j and abs(covariance[i, j]) > ALIKE * std[i] * std[j]
     ]
     return {"not_fixed": ", ".join(not_fixed), "not_told_apart": ", ".join(pairs)}
-
-
-def _closed_devices(observation: Observation, X: FloatArray, mu: FloatArray) -> list[Device]:
-    """Return the devices of samples at other values of the measured axis, without dissipation.
-
-    Only such wires have T_IV and levels.
-    """
-    devices = observation.unknowns.devices(X, replace(observation.measurement, mu=mu))
-    return [
-        one._replace(wire=replace(one.wire, dissipation=0.0, parent_dissipation=0.0))
-        for one in devices
-    ]
-
-
-def _visibility(
-    observation: Observation, X: FloatArray, maps: tuple[FloatArray, FloatArray]
-) -> FloatArray:
-    """Return T_IV of samples on a grid of the measured axis and B, shape (sample, lead, mu, B)."""
-    devices, theta = _closed_devices(observation, X, maps[0]), observation.measurement.theta
-    if share_settings(devices):
-        wires, mu = [device.wire for device in devices], devices[0].setup.mu
-        return topological_visibility(wires, mu, maps[1], theta=theta).to_numpy()
-    each = [
-        topological_visibility(one.wire, one.setup.mu, maps[1], theta=theta).to_numpy()
-        for one in devices
-    ]
-    return np.stack(each)
-
-
-def _gap_energies(observation: Observation) -> FloatArray:
-    """Return energies from zero to the largest gap that the parent may have, in meV."""
-    return np.linspace(0.0, observation.unknowns.given.extremes("delta0")[1], GAPS)
-
-
-def _gap_probability(observation: Observation, X: FloatArray, gaps: FloatArray) -> FloatArray:
-    """Return the share of samples whose lowest excitation is above each energy (gap, mu, B)."""
-    m = observation.measurement
-    above = np.zeros((gaps.size, m.mu.size, m.B.size))
-    visibility = _visibility(observation, X, (m.mu, m.B))[:, 0]
-    for device, T_IV in zip(_closed_devices(observation, X, m.mu), visibility, strict=True):
-        levels = routes.levels([device.wire], device.setup.mu, m.B, 2, m.theta)[0]
-        gap, critical_field = device.wire.delta0, device.wire.critical_field
-        parent = np.array([[gap_in_field(gap, critical_field, one)] for one in m.B])
-        levels = np.where(np.isnan(levels), parent, levels)
-        excitation = np.where(T_IV < 0, levels[..., 1], levels[..., 0])
-        above += excitation > gaps[:, None, None]
-    return above / len(X)
-
-
-def _maps(mu: FloatArray, B: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return fine grids of the measured axis and of B over the range of the measurement."""
-    fine_mu, fine_B = (
-        np.linspace(axis[0], axis[-1], points) if axis.size > 1 else axis
-        for axis, points in zip((mu, B), MAP_POINTS, strict=True)
-    )
-    return fine_mu, fine_B
