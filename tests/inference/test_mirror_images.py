@@ -1,10 +1,13 @@
 """Data that a wire and its mirror image explain alike: both are in the answer."""
 
+import re
+
 import numpy as np
 import pytest
 
 import disorder_landscape as dl
 from disorder_landscape.inference.problem.unknowns import Unknowns
+from disorder_landscape.inference.report import summary, verdict_sentence
 from disorder_landscape.inference.verdict import CONVERGED
 from disorder_landscape.model.disorder import disorder_realization
 
@@ -41,3 +44,11 @@ def test_both_are_found_where_the_data_do_not_tell_them_apart():
     assert off[0].mean() == pytest.approx(0.5, abs=0.2)
     assert off[1].mean() == pytest.approx(0.5, abs=0.2)
     assert abs(found["potential_mean"] - (V + V[::-1]) / 2).max() < 0.1
+    assert found["share"].to_numpy() == pytest.approx([0.5, 0.5], abs=0.2)
+    assert found["share"][0] >= found["share"][1]
+    one, other = found["potential_maxima"].to_numpy()
+    np.testing.assert_allclose(one, other[::-1], atol=1e-3)
+    shares = r"\d\d and \d\d % of the posterior"
+    begins = f"Converged: 2 wires explain the data within their noise, with {shares}; V is known"
+    assert re.match(begins, verdict_sentence(found))
+    assert re.search(f"maxima          2, with {shares}; the mean", "\n".join(summary(found)))

@@ -10,7 +10,12 @@ from matplotlib.figure import Figure
 import disorder_landscape as dl
 from disorder_landscape.inference.page import page
 from disorder_landscape.inference.plot import plot_inference
-from disorder_landscape.inference.plot_maps import draw_conductances, draw_maps, sure_gap
+from disorder_landscape.inference.plot_maps import (
+    draw_conductances,
+    draw_maps,
+    measured_channels,
+    sure_gap,
+)
 from disorder_landscape.inference.problem.measurement import PAPERS_SETTINGS, measurement_of
 from disorder_landscape.inference.report import sentences_on, topological_sentence, verdict_sentence
 from disorder_landscape.inference.verdict import NOT_CONVERGED, NOT_DESCRIBED
@@ -45,6 +50,12 @@ def test_a_result_is_drawn_in_each_format(result, measured, tmp_path, ending):
     begins = {".html": b"<!doctype html>", ".png": b"\x89PNG", ".pdf": b"%PDF"}
     assert path.read_bytes().startswith(begins[ending])
     assert [one.name for one in tmp_path.iterdir()] == [path.name]
+
+
+def test_one_conductance_alone_is_drawn(result, measured, tmp_path):
+    shown = measurement_of(measured[["G_RL"]], PAPERS_SETTINGS)
+    plot_inference(result, shown, tmp_path / "drawn.png")
+    assert measured_channels(shown) == [3]
 
 
 def test_a_page_says_what_was_found(result):
@@ -104,9 +115,9 @@ ONE_BIAS = {"bias": [1]}
 @pytest.mark.parametrize(
     ("at", "axes", "title", "maps"),
     [
-        ({}, ("gate", "$B$ [T]"), "at bias = 0 meV", 6),
-        (ONE_GATE, ("bias [meV]", "$B$ [T]"), "at gate = 0.6", 3),
-        (ONE_FIELD, ("bias [meV]", "gate"), "at $B$ = 0.4 T", 3),
+        ({}, ("gate", "$B$ [T]"), "at bias = 0 meV", 9),
+        (ONE_GATE, ("bias [meV]", "$B$ [T]"), "at gate = 0.6", 6),
+        (ONE_FIELD, ("bias [meV]", "gate"), "at $B$ = 0.4 T", 6),
         (ONE_GATE | ONE_BIAS, ("$e^2/h$", "$B$ [T]"), "at bias = 0 meV", 0),
         (ONE_FIELD | ONE_BIAS, ("$e^2/h$", "gate"), "at bias = 0 meV", 0),
         (ONE_GATE | ONE_FIELD, ("$e^2/h$", "bias [meV]"), "at gate = 0.6", 0),
@@ -119,8 +130,8 @@ def test_maps_are_over_the_axes_of_more_than_one_value(result, measured, at, axe
     figure = Figure()
     panels = dict(
         zip(
-            ("measured", "explained", "residual", "T", "P", "gap"),
-            figure.subplots(2, 3).ravel(),
+            ("measured", "explained", "residual", *CONDUCTANCES[1:], "T", "P", "gap"),
+            figure.subplots(3, 3).ravel(),
             strict=True,
         )
     )
@@ -129,6 +140,8 @@ def test_maps_are_over_the_axes_of_more_than_one_value(result, measured, at, axe
     draw_maps(figure, panels, result.isel(at), shown)
     assert (panels["measured"].get_ylabel(), panels["measured"].get_xlabel()) == axes
     assert title in panels["measured"].get_title()
+    for name in CONDUCTANCES[1:]:
+        assert panels[name].get_title().endswith("measured − explained")
     assert sum(bool(panel.collections) for panel in panels.values()) == maps
     dots = panels["P"].lines[-1]
     over = shown.B if panels["P"].get_xlabel() == "$B$ [T]" else shown.mu

@@ -13,11 +13,16 @@ import xarray as xr
 from disorder_landscape.files import write_picture
 from disorder_landscape.inference.inferred import prior_of_result
 from disorder_landscape.inference.page import DPI, write_page
-from disorder_landscape.inference.plot_maps import draw_conductances, draw_maps
+from disorder_landscape.inference.plot_maps import (
+    draw_conductances,
+    draw_maps,
+    measured_channels,
+)
 from disorder_landscape.inference.problem.distributions import Distribution
 from disorder_landscape.inference.problem.measurement import Measurement
 from disorder_landscape.inference.report import (
     error_bar,
+    has_several_maxima,
     parameter_with_std,
     plain,
     prior_as_text,
@@ -73,16 +78,20 @@ def _figure(result: xr.Dataset, measurement: Measurement) -> Figure:
 
     unknown = prior_of_result(result).unknown
     with_components = "component" in result.dims
+    others = [CONDUCTANCES[c] for c in measured_channels(measurement)[1:]]
     rows = {
         "V": (["V"] * 6, 1.0),
         "std": (["std"] * 6, 0.6),
         "c": ((["c"] * 3 if with_components else ["misfit"] * 3) + ["misfit"] * 3, 0.9),
         "parameters": (["parameters"] * 6, 0.3 + 0.12 * len(unknown)),
         "data": (_twice("measured", "explained", "residual"), 1.3),
+        "others": (_twice(*others, *["."] * (3 - len(others))), 1.3),
         "maps": (_twice("T", "P", "gap"), 1.3),
     }
     if not unknown:
         del rows["parameters"]
+    if not others:
+        del rows["others"]
     heights = [height for _, height in rows.values()]
     figure = Figure(figsize=(WIDTH, HEIGHT * sum(heights)), layout="constrained")
     panels: dict[str, Any] = figure.subplot_mosaic(
@@ -112,7 +121,13 @@ def _potential(panel: Any, result: xr.Dataset) -> None:
     panel.plot(site, V, "k", lw=0.8)
     panel.set(ylabel=r"$V_\mathrm{dis}$ [meV]", xlim=(site[0], site[-1]))
     panel.tick_params(labelbottom=False)
-    panel.set_title("mean of the posterior")
+    if not has_several_maxima(result):
+        panel.set_title("mean of the posterior")
+        return
+    for share, one in zip(result["share"], result["potential_maxima"], strict=True):
+        panel.plot(site, one, lw=0.6, label=f"{100 * share:.0f} %")
+    panel.set_title("mean of the posterior (black), and its maxima with their shares of it")
+    _legend_on_top(panel, ncols=8)
 
 
 def _potential_std(panel: Any, result: xr.Dataset) -> None:
@@ -126,9 +141,14 @@ def _potential_std(panel: Any, result: xr.Dataset) -> None:
     panel.set(xlabel="site", ylabel="off [µeV]", xlim=(site[0], site[-1]))
     bar = f"error bar of V: {plain(error_bar(result))} µeV, root mean square"
     panel.set_title(f"samples minus mean; {bar}")
+    _legend_on_top(panel, ncols=2)
+
+
+def _legend_on_top(panel: Any, ncols: int) -> None:
+    """Show a legend in one row above what is drawn."""
     low, high = panel.get_ylim()
-    panel.set_ylim(low, high + 0.5 * (high - low))  # room for the legend
-    panel.legend(ncols=2, frameon=False, loc="upper center")
+    panel.set_ylim(low, high + 0.5 * (high - low))
+    panel.legend(ncols=ncols, frameon=False, loc="upper center")
 
 
 def _components(panel: Any, result: xr.Dataset) -> None:

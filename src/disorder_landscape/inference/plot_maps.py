@@ -32,14 +32,27 @@ class Shown(NamedTuple):
     options: Mapping[str, Any]
 
 
+def measured_channels(measurement: Measurement) -> list[int]:
+    """Return which of the channels were measured."""
+    return np.flatnonzero(np.isfinite(measurement.G).any(axis=(0, 1, 2))).tolist()
+
+
 def draw_conductances(
     figure: Any, panels: Mapping[str, Any], result: xr.Dataset, measurement: Measurement
 ) -> None:
-    """Show the first channel that was measured, at the bias next to zero.
+    """Show the first channel that was measured, and what is not explained of each other one.
 
-    Over B and bias where there is one µ only, and over µ and bias where there is one B.
+    At the bias next to zero; over B and bias where there is one µ only, and over µ and bias where
+    there is one B.
     """
-    channel = int(np.isfinite(measurement.G).any(axis=(0, 1, 2)).argmax())
+    first, *others = measured_channels(measurement)
+    _row_of_maps(figure, panels, _compared(result, measurement, first))
+    shown = {CONDUCTANCES[c]: _compared(result, measurement, c)["residual"] for c in others}
+    _row_of_maps(figure, panels, shown)
+
+
+def _compared(result: xr.Dataset, measurement: Measurement, channel: int) -> dict[str, Shown]:
+    """Return maps of what was measured of a channel, of what is explained, and of the residual."""
     name = CONDUCTANCES[channel]
     axes = {measurement.axis: measurement.mu, "B": measurement.B, "bias": measurement.bias}
     measured = xr.DataArray(measurement.G[..., channel], axes, list(axes))
@@ -58,14 +71,13 @@ def draw_conductances(
     std = np.sqrt(errors_variance(result.attrs["noise"][channel]) + beside**2)
     symbol, unit = SYMBOLS.get(other, (other, ""))
     value = f"{symbol} = {axes[other][at]:g} {unit}".strip()
-    off, all_errors = (G - answer) / std, r"$\sigma$ of all errors"
-    title = rf"$G_\mathrm{{{name[2:]}}}$ at {value}, measured"
-    shown = {
-        "measured": Shown(grid, G, title, "$e^2/h$", norm),
-        "explained": Shown(grid, answer, "explained", "$e^2/h$", norm),
-        "residual": Shown(grid, off, "measured minus explained", all_errors, RESIDUAL),
+    G_name, all_errors = rf"$G_\mathrm{{{name[2:]}}}$", r"$\sigma$ of all errors"
+    off = f"{G_name}, measured − explained"
+    return {
+        "measured": Shown(grid, G, f"{G_name} at {value}, measured", "$e^2/h$", norm),
+        "explained": Shown(grid, answer, f"{G_name}, explained", "$e^2/h$", norm),
+        "residual": Shown(grid, (G - answer) / std, off, all_errors, RESIDUAL),
     }
-    _row_of_maps(figure, panels, shown)
 
 
 def _shown_axes(axes: Mapping[str, FloatArray]) -> tuple[str, str, str]:
@@ -99,7 +111,7 @@ def draw_maps(
     T_IV = result["T_IV"][0].to_numpy()
     closed = r" ($\Gamma = 0$)" if has_dissipation(result) else ""
     shown = {
-        "T": Shown(fine, T_IV, rf"$T_\mathrm{{IV}}$ of the mean{closed}", "", in_T),
+        "T": Shown(fine, T_IV, rf"$T_\mathrm{{IV}}$ of the most probable wire{closed}", "", in_T),
         "P": Shown(fine, P, "$P$(topological); dots: data", "", in_P),
         "gap": Shown(data, gap, exceed + closed, "µeV", in_gap),
     }

@@ -130,6 +130,17 @@ def misfits(result: xr.Dataset) -> list[tuple[str, str, str]]:
     ]
 
 
+def has_several_maxima(result: xr.Dataset) -> bool:
+    """Return whether the posterior has several maxima; results of older versions do not say."""
+    return result.sizes.get("maximum", 1) > 1
+
+
+def shares_as_text(result: xr.Dataset) -> str:
+    """Return the shares of the posterior that its maxima have, where there are several."""
+    *others, last = (f"{100 * share:.0f}" for share in result["share"].to_numpy())
+    return f"{', '.join(others)} and {last} %"
+
+
 def verdict_sentence(result: xr.Dataset) -> str:
     """Return the verdict as a sentence."""
     verdict = result.attrs["verdict"]
@@ -138,7 +149,11 @@ def verdict_sentence(result: xr.Dataset) -> str:
         known = f"V is known to {plain(bar)} µeV (r.m.s. over the sites)"
         if bar > OPEN * before:
             known += f", hardly better than before ({plain(before)} µeV)"
-        return f"Converged: this wire explains the data within their noise; {known}."
+        explain = "this wire explains the data within their noise"
+        if has_several_maxima(result):
+            explain = f"{result.sizes['maximum']} wires explain the data within their noise, with "
+            explain += f"{shares_as_text(result)} of the posterior"
+        return f"Converged: {explain}; {known}."
     reason = {
         NOT_CONVERGED: "a better answer may have been missed",
         NOT_DESCRIBED: "no wire of this model explains the data within their noise",
@@ -202,6 +217,9 @@ def summary(result: xr.Dataset) -> list[str]:
         f"attempts        {attrs['attempts']}, rounds: {attrs['rounds']}",
         f"error bar of V  {error_bar(result):.3g} µeV, root mean square over the sites",
     ]
+    if has_several_maxima(result):
+        said = f"{result.sizes['maximum']}, with {shares_as_text(result)} of the posterior"
+        lines.append(f"maxima          {said}; the mean of V is none of them")
     for name, belief in prior_of_result(result).unknown.items():
         known = prior_as_text(belief)
         lines.append(f"{name:14}  {parameter_with_std(result, name)}; before: {known}")

@@ -14,6 +14,7 @@ from disorder_landscape.inference.maps import (
     gap_probability,
     visibility,
 )
+from disorder_landscape.inference.maxima import maxima_of
 from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.posterior.importance_sampling import weighted_samples
 from disorder_landscape.inference.problem.distributions import Distribution, Uniform
@@ -42,8 +43,9 @@ def result_of(observation: Observation, outcome: Outcome, samples: int, seed: in
     mean, covariance = answer.mean, answer.covariance
     X = outcome.draw(np.random.default_rng([seed, 2**31 + 1]), samples)
     maps = fine_grids(m.mu, m.B)
-    T_IV = visibility(observation, np.concatenate([mean[None], X]), maps)
-    G = observation.conductances(outcome.best.answer.mean[None])[0]
+    most_probable = outcome.best.answer.mean[None]
+    T_IV = visibility(observation, np.concatenate([most_probable, X]), maps)
+    G = observation.conductances(most_probable)[0]
     grid, gaps = ("map_mu", "map_B"), gap_energies(observation)
     data = {
         "potential": (("sample", "site"), unknowns.potential(X)),
@@ -72,7 +74,7 @@ def result_of(observation: Observation, outcome: Outcome, samples: int, seed: in
             "components_std": ("component", std),
         }
         coords["component"] = np.arange(1, unknowns.given.components + 1)
-    dataset = with_units(xr.Dataset(data, coords=coords))
+    dataset = with_units(xr.Dataset(data, coords=coords)).merge(maxima_of(observation, outcome))
     for name, belief in unknowns.parameters.items():
         k = unknowns.names.index(name)
         if (drawn := outcome.importance_samples) is None:

@@ -1,0 +1,44 @@
+"""The maxima of a posterior: each is a wire of its own that explains the data."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from disorder_landscape.inference.outcome import Outcome
+from disorder_landscape.inference.posterior.samples import posterior_shares
+from disorder_landscape.inference.problem.observation import Observation
+from disorder_landscape.inference.problem.parameters import BY_NAME
+
+MENTIONED = 0.05
+"""Maxima with at least this share of the posterior are said, and the one with the largest."""
+
+
+def maxima_of(observation: Observation, outcome: Outcome) -> xr.Dataset:
+    """Return the wires at the maxima of the posterior, the one with the largest share first.
+
+    Returns
+    -------
+    Dataset
+        share (maximum) of the posterior; potential_maxima (maximum, site) in meV, and each unknown
+        parameter (maximum) under its own name with _maxima.
+    """
+    share = posterior_shares(observation, outcome.optima, outcome.importance_samples)
+    order = np.argsort(-share, kind="stable")
+    order = order[share[order] >= min(MENTIONED, share.max())]
+    X = np.stack([outcome.optima[k].answer.mean for k in order])
+    unknowns = observation.unknowns
+    V = unknowns.potential(X)
+    words = {"long_name": "potential at the maxima of the posterior", "units": "meV"}
+    of_share = {"long_name": "share of the posterior", "units": "1"}
+    found = xr.Dataset(
+        {
+            "share": ("maximum", share[order], of_share),
+            "potential_maxima": (("maximum", "site"), V, words),
+        }
+    )
+    for name in unknowns.parameters:
+        one = BY_NAME[name]
+        attrs = {"long_name": f"{one.long_name} at the maxima", "units": one.unit or "1"}
+        found[f"{name}_maxima"] = ("maximum", unknowns.parameter(name, X), attrs)
+    return found
