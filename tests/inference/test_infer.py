@@ -15,8 +15,9 @@ from disorder_landscape.chain import FIVE, shipped_model
 from disorder_landscape.config import Config, DatasetConfig, TrainingConfig
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.files import read_json
-from disorder_landscape.inference.infer import observation_of
+from disorder_landscape.inference.given import observation_of
 from disorder_landscape.inference.invert import InversionSettings
+from disorder_landscape.inference.noise_hints import noise_hint, parse_noise, stated_noise_hint
 from disorder_landscape.inference.problem.distributions import Uniform
 from disorder_landscape.inference.problem.measurement import measurement_of, settings_of
 from disorder_landscape.inference.problem.observation import (
@@ -25,12 +26,7 @@ from disorder_landscape.inference.problem.observation import (
     stated_noise,
 )
 from disorder_landscape.inference.problem.unknowns import unknowns_of
-from disorder_landscape.inference.report import (
-    noise_hint,
-    parse_noise,
-    stated_noise_hint,
-    summary,
-)
+from disorder_landscape.inference.report import summary
 from disorder_landscape.inference.search.first_guess import network_guess
 from disorder_landscape.inference.search.network_features import network_features
 from disorder_landscape.inference.search.regression_rounds import RoundSettings
@@ -272,6 +268,11 @@ def test_the_seed_decides(measured, inferred):
         (lambda G: G.assign(G_LL=G["G_LL"].assign_attrs(units="S")), {}, "units of G_LL are S"),
         (lambda G: G.assign(G_LL=G["G_LL"].assign_attrs(units="mA/V")), {}, "of G_LL are mA/V"),
         (lambda G: G * 38.74, {}, "more than one subband can carry"),
+        (
+            lambda G: G * (5 / abs(G["G_LL"]).max()),
+            {},
+            "be at most 4 e²/h, which is what one subband",
+        ),
         (
             lambda G: G.assign_coords(mu=G["mu"].assign_attrs(units="eV")),
             {},

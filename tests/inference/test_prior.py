@@ -14,7 +14,7 @@ import disorder_landscape.inference.problem.observation as observation_module
 from disorder_landscape import ArgumentError
 from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.config import DatasetConfig
-from disorder_landscape.inference.infer import observation_of
+from disorder_landscape.inference.given import observation_of
 from disorder_landscape.inference.problem.distributions import Normal, Uniform
 from disorder_landscape.inference.problem.measurement import empty_measurement
 from disorder_landscape.inference.problem.parameters import BY_NAME, PARAMETERS

@@ -97,7 +97,7 @@ def infer(
     Example: landscape infer device.nc --prior configs/priors/device.toml --noise 0.005 -o found.nc
     """
     from disorder_landscape.inference.file import Settings, Task, tasks_of_folder
-    from disorder_landscape.inference.report import parse_noise
+    from disorder_landscape.inference.noise_hints import parse_noise
 
     errors = None if noise is None else parse_noise(noise)
     settings = Settings(prior, model, errors, from_prior, samples, seed, discrepancy, made_here())
@@ -124,11 +124,12 @@ def _infer_alone(settings: Settings, task: Task) -> None:
     from disorder_landscape.dataset.store import read_dataset
     from disorder_landscape.files import check_netcdf, check_writable
     from disorder_landscape.inference.file import infer_file, prior_of
-    from disorder_landscape.inference.infer import observation_of
+    from disorder_landscape.inference.given import observation_of
+    from disorder_landscape.inference.noise_hints import noise_hint
     from disorder_landscape.inference.plot import PAGE
     from disorder_landscape.inference.problem.observation import stated_noise
     from disorder_landscape.inference.progress import announce_inference, inference_progress
-    from disorder_landscape.inference.report import noise_hint, summary
+    from disorder_landscape.inference.report import summary
     from disorder_landscape.learning.model import existing_folder, load_model_config
     from disorder_landscape.model.parameters import NOISE_FLOOR
     from disorder_landscape.simulation import check_plot

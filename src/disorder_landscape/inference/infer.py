@@ -21,6 +21,7 @@ from disorder_landscape.arguments import (
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.discrepancy import BestEffort, best_effort, discrepancy_of
+from disorder_landscape.inference.given import Model, config_of, observation_of, prior_given
 from disorder_landscape.inference.invert import (
     InversionSettings,
     invert,
@@ -28,19 +29,8 @@ from disorder_landscape.inference.invert import (
     usual_settings,
 )
 from disorder_landscape.inference.optimum import chi_square_excess
-from disorder_landscape.inference.problem.measurement import (
-    PAPERS_SETTINGS,
-    measurement_of,
-    settings_of,
-)
-from disorder_landscape.inference.problem.observation import (
-    Observation,
-    noise_of_channels,
-    overall_misfit,
-    stated_noise,
-)
+from disorder_landscape.inference.problem.observation import Observation, overall_misfit
 from disorder_landscape.inference.problem.prior import Prior
-from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.result import result_of
 from disorder_landscape.inference.search.first_guess import on_grid_of_network
 from disorder_landscape.inference.stages import (
@@ -53,19 +43,11 @@ from disorder_landscape.inference.stages import (
     within,
 )
 from disorder_landscape.inference.verdict import verdict
-from disorder_landscape.learning.model import (
-    TrainedModel,
-    existing_folder,
-    load_model,
-    load_model_config,
-)
+from disorder_landscape.learning.model import TrainedModel, load_model
 
 SAMPLES = 64
 SEARCH = 8
 """Number of the search's version. What an interrupted run of another one has found is of no use."""
-TOML = ".toml"
-"""Ending of a prior's file."""
-Model = str | Path | TrainedModel
 
 
 def infer(
@@ -149,8 +131,8 @@ def infer(
         if the noise is negative or another argument is out of range, or if prior and measurement
         say different things of a parameter.
     """
-    prior = _prior_of(prior)
-    known = prior if isinstance(prior, Prior) else _config_of(prior)
+    prior = prior_given(prior)
+    known = prior if isinstance(prior, Prior) else config_of(prior)
     observation = observation_of(G, known, noise)
     check_progress(progress)
     progress = silent if progress is None else progress
@@ -196,53 +178,6 @@ def infer(
     return result
 
 
-def observation_of(
-    G: xr.Dataset,
-    prior: Prior | Model | DatasetConfig,
-    noise: float | Mapping[str, float] | None = None,
-) -> Observation:
-    """Return what was measured of a wire, with what is unknown of it.
-
-    Parameters
-    ----------
-    G : Dataset
-    prior : Prior, path, TrainedModel or DatasetConfig
-        What is known, or a model or the configuration of its dataset, which says so.
-    noise : float or mapping, optional
-        All as in `infer`.
-
-    Raises
-    ------
-    ArgumentError
-        As in `infer`.
-    """
-    prior = prior if isinstance(prior, DatasetConfig) else _prior_of(prior)
-    if isinstance(prior, Prior):
-        usual, known = PAPERS_SETTINGS, prior
-    else:
-        config = prior if isinstance(prior, DatasetConfig) else _config_of(prior)
-        usual, known = settings_of(config), Prior.of_dataset(config)
-    measurement = measurement_of(G, usual)
-    errors = noise_of_channels(stated_noise(G.attrs) if noise is None else noise, G)
-    return Observation(measurement, Unknowns(known.for_measurement(measurement)), errors)
-
-
-def _prior_of(given: Prior | Model) -> Prior | Model:
-    """Return the prior that a file says, where one is given."""
-    is_file = isinstance(given, str | Path) and Path(given).suffix == TOML
-    return Prior.from_toml(given) if is_file else given  # type: ignore[arg-type]
-
-
-def _config_of(model: Model) -> DatasetConfig:
-    """Return the configuration of a model's dataset."""
-    if isinstance(model, TrainedModel):
-        return model.config.dataset
-    is_path = isinstance(model, str | Path)
-    must = "be a Prior, its file (.toml), or the folder of a trained model"
-    require(is_path, "prior", must, f"it is {shown(model)}")
-    return load_model_config(existing_folder(model)).dataset
-
-
 def _network(
     observation: Observation, prior: Prior | Model, network: bool | Model | None
 ) -> tuple[TrainedModel | None, str]:
@@ -257,7 +192,7 @@ def _network(
         model = prior
     else:
         model = network
-    config, sites = _config_of(model), observation.unknowns.given.sites
+    config, sites = config_of(model), observation.unknowns.given.sites
     must = f"be of wires of {sites} sites, as the prior is"
     require(config.sites == sites, "network", must, f"it is of {config.sites}")
     lacks = bool(np.isin(config.bias, observation.measurement.left_out).any())

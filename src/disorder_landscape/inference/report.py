@@ -1,83 +1,21 @@
-"""What `landscape infer` reads from its options, and the lines that it prints."""
+"""The lines and sentences that say what `infer` has found."""
 
 from __future__ import annotations
 
 import numpy as np
 import xarray as xr
 
-from disorder_landscape.arguments import numbers_of
-from disorder_landscape.config import TrainingConfig
 from disorder_landscape.inference.inferred import prior_of_result
-from disorder_landscape.inference.optimum import TOLERATED
+from disorder_landscape.inference.noise_hints import stated_noise_hint
 from disorder_landscape.inference.problem.distributions import Distribution, Uniform
-from disorder_landscape.inference.problem.observation import noise_of_channels, one_or_each
 from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.result import OPEN
 from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED, NOT_DESCRIBED
-from disorder_landscape.model.parameters import NOISE_FLOOR, FloatArray
-from disorder_landscape.model.quantities import CONDUCTANCES
-
-UNTRAINED = 2.0
-"""A network guesses badly if errors are more than so many times those of its training."""
-ALIKE = 1.1
-"""Misfits are those of noise if they differ by less than this factor between the channels, …"""
-OTHERWISE = 1.25
-"""… and that noise is not the stated one if they are more or less than it by this factor."""
 
 SURE = 0.95
 """What at least this share of the samples has is taken for sure."""
 
 NOT_TO_BE_TRUSTED = "so neither error bars nor P(topological) are to be trusted"
-
-
-def parse_noise(text: str) -> float | dict[str, float]:
-    """Return the noise that "0.01" or "0.01,0.01,0.001,0.001" describes.
-
-    Raises
-    ------
-    ArgumentError
-        If the text is something else.
-    """
-    must = f"be a number in e²/h, or one for each of {', '.join(CONDUCTANCES)}"
-    values = numbers_of("noise", text, (1, len(CONDUCTANCES)), must)
-    return one_or_each(values)
-
-
-def noise_hint(training: TrainingConfig, noise: float | dict[str, float]) -> str:
-    """Return a line about a network that was trained with smaller errors only, or nothing."""
-    most, known = noise_of_channels(noise).max(), training.largest_noise
-    if training.noise_up_to is not None or most <= UNTRAINED * max(known, NOISE_FLOOR):
-        return ""
-    return (
-        f"This network was trained with errors of up to {known:g} e²/h: for {most:g} e²/h one of "
-        "the models named ..._noisy guesses better, and the inversion takes less time."
-    )
-
-
-def stated_noise_hint(misfit: FloatArray, noise: FloatArray, excess: float) -> str:
-    """Return a line about noise that is other than stated; empty without any sign of that.
-
-    What a model lacks makes some channels worse than others; noise makes all alike. Unknowns that
-    are about as many as the data explain them whatever the noise is.
-
-    Parameters
-    ----------
-    misfit, noise : array, shape (channel,)
-        In e²/h; NaN where nothing was measured.
-    excess : float
-        Of χ² above its mean, in its standard deviations.
-    """
-    there = np.isfinite(misfit) & (noise > 0)
-    times = misfit[there] / noise[there]
-    if times.size == 0 or times.max() > ALIKE * times.min() or abs(excess) < TOLERATED:
-        return ""
-    if 1 / OTHERWISE < times.mean() < OTHERWISE or (times.size == 1 and times.mean() > 1):
-        return ""
-    other = "larger" if times.mean() > 1 else "smaller, and so the error bars"
-    return (
-        f"The misfit is {times.mean():.2g} times the noise in all channels alike: the noise "
-        f"may be other than was stated: {other}."
-    )
 
 
 def parameter_with_std(result: xr.Dataset, name: str) -> str:

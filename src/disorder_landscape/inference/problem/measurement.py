@@ -27,8 +27,12 @@ QUANTUM = e**2 / h
 """e²/h in S."""
 QUANTA = ("", "e^2/h", "e²/h", "e**2/h", "e2/h")
 """Units that conductances may state."""
+CARRIED = 4.0
+"""In e²/h: what Andreev reflection of both spins of one subband carries at most, …"""
+ERRORS = 6.0
+"""… and so many standard deviations of errors may be beyond it. …"""
 LARGEST = 10.0
-"""In e²/h: no conductance of a wire with one subband is above 4."""
+"""… More than this are none, whatever the errors are."""
 OF_THE_WIRE = (
     *("alpha", "g", "gamma", "delta0", "critical_field", "dissipation"),
     *("mass", "lattice", "lead_mu"),
@@ -200,6 +204,21 @@ def check_wire(measurement: Measurement) -> None:
         stated = measurement.stated.get(name, usual)
         must = f"be {usual:g}, as in all simulations here"
         require(bool(np.isclose(stated, usual)), name, must, f"the measurement's is {stated:g}")
+
+
+def check_carried(measurement: Measurement, noise: FloatArray) -> None:
+    """Require that no conductance is larger than one subband carries, with errors (channel,).
+
+    Raises
+    ------
+    ArgumentError
+        If one is.
+    """
+    beyond = np.abs(measurement.G) - ERRORS * noise
+    largest = np.unravel_index(np.nanargmax(beyond), beyond.shape)
+    must = f"be at most {CARRIED:g} e²/h, which is what one subband carries"
+    but = f"one is {measurement.G[largest]:.3g} e²/h, with a noise of {noise[largest[-1]]:g} e²/h"
+    require(bool(beyond[largest] <= CARRIED), "measurement", must, but)
 
 
 def with_axes(dataset: xr.Dataset) -> xr.Dataset:
