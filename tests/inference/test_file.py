@@ -9,6 +9,7 @@ import xarray as xr
 from command_line import landscape
 from disorder_landscape import ArgumentError
 from disorder_landscape.executors.local import LocalProcesses
+from disorder_landscape.inference import file
 from disorder_landscape.inference.file import (
     Settings,
     Task,
@@ -105,6 +106,18 @@ def test_measurements_of_one_name_are_refused(folder, tmp_path):
         tasks_of_folder([folder / "0.nc"], folder, None, settings)
     with pytest.raises(ArgumentError, match="there is no"):
         tasks_of_folder([folder / "none.nc"], tmp_path, None, settings)
+
+
+def test_pictures_are_drawn_of_results_that_are_there(monkeypatch, folder, inferred, tmp_path):
+    """… without another inversion."""
+    monkeypatch.setattr(file, "infer", None)
+    settings, one = settings_of(folder), [folder / "0.nc"]
+    (task,) = tasks_of_folder(one, inferred, tmp_path / "pictures", settings)
+    assert not task.is_done
+    assert infer_one_of_many(settings, task).verdict
+    assert task.is_done
+    with pytest.raises(ArgumentError, match="plot must name a folder, as output does"):
+        tasks_of_folder(one, inferred, tmp_path / "page.html", settings)
 
 
 def test_of_two_processes_with_one_output_one_waits(folder, inferred, tmp_path):

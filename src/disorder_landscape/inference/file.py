@@ -91,11 +91,14 @@ def tasks_of_folder(
     Raises
     ------
     ArgumentError
-        If two measurements have one name, a result would replace its measurement, or the folder
-        holds the result of another measurement, model or option under one of these names.
+        If two measurements have one name, a result would replace its measurement, the folder holds
+        the result of another measurement, model or option under one of these names, or pictures
+        are to go into a file.
     """
     names = [path.stem for path in measurements]
     twice = sorted({name for name in names if names.count(name) > 1})
+    is_folder = plots is None or not plots.suffix or plots.is_dir()
+    require(is_folder, "plot", "name a folder, as output does", f"it is '{plots}'")
     must = "have names of their own, since their results have the same"
     require(not twice, "measurement", must, f"there are several of {', '.join(twice)}")
     given = _given(settings)
@@ -145,15 +148,20 @@ def _infer_file(settings: Settings, task: Task, progress: Progress = silent) -> 
         checkpoint=task.unfinished,
         progress=progress,
     )
-    if task.plot is not None:  # before the result, which tells that all is done
-        explained = measurement_of(measured, PAPERS_SETTINGS)
-        plot_inference(result, explained, task.plot)
+    _draw(result, task)  # before the result is written, which tells that all is done
     asked = _asked(task.measurement, settings, _given(settings))
     attrs = {**settings.made, ASKED: asked}
     of_channels = ["misfit", "discrepancy"]  # some may be without data
     write_dataset(result, task.output, attrs, may_lack=of_channels)
     task.unfinished.unlink(missing_ok=True)
     return result
+
+
+def _draw(result: xr.Dataset, task: Task) -> None:
+    """Draw a result, where a picture is asked for."""
+    if task.plot is not None:
+        measured = measurement_of(read_dataset(task.measurement), PAPERS_SETTINGS)
+        plot_inference(result, measured, task.plot)
 
 
 def prior_of(settings: Settings) -> Prior | Path:
@@ -193,11 +201,13 @@ class Outcome:
 
 
 def infer_one_of_many(settings: Settings, task: Task) -> Outcome:
-    """Do as `infer_file`; an error of one measurement does not hinder the others."""
+    """Do as `infer_file`, or draw the result that is there; an error does not hinder the others."""
     try:
         with _alone_with(task):
-            by_another = task.is_done
-            result = read_dataset(task.output) if by_another else _infer_file(settings, task)
+            is_there = task.output.exists()
+            result = read_dataset(task.output) if is_there else _infer_file(settings, task)
+            if not task.is_done:
+                _draw(result, task)
         return Outcome(task, verdict=str(result.attrs["verdict"]))
     except ArgumentError as error:
         return Outcome(task, error=str(error))
