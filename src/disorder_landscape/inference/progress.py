@@ -44,7 +44,11 @@ def announce_inference(observation: Observation) -> None:
         wires = prior.size * once
     else:
         wires = prior.size * (wide if observation.noise.mean() >= OFTEN_WIDE else twice)
-    announce_repeated("infer", lambda k: observation.simulate(prior[None]), wires)
+    announce_repeated("infer", lambda k: observation.simulate(prior[None]), wires, _say)
+
+
+def _say(text: str) -> None:
+    print(f"{text}; several times that where no wire explains the data")
 
 
 @contextmanager
