@@ -46,7 +46,7 @@ from disorder_landscape.inference.verdict import verdict
 from disorder_landscape.learning.model import TrainedModel, load_model
 
 SAMPLES = 64
-SEARCH = 8
+SEARCH = 9
 """Number of the search's version. What an interrupted run of another one has found is of no use."""
 
 

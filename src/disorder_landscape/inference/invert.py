@@ -188,8 +188,9 @@ def _search(
         one = next(rounds, None)
         if one is None:
             optima.start_at(found.mean, number)
-            if optima.fits:  # not settled, perhaps since V has never been known to TRIED_FROM
-                starts.start_about(start, number, np.random.default_rng([seed, number, count, 3]))
+            # not settled, perhaps since V has never been known to TRIED_FROM
+            rng = np.random.default_rng([seed, number, count, 3])
+            starts.start_about(start, number, rng, at_last=not optima.fits)
             return count
         progress(Step(number, ROUND, count, one.misfit, one.spread))
         found, count, spread = one.distribution, count + 1, one.spread

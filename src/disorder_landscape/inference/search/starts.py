@@ -62,14 +62,23 @@ class Starts:
         self.some = self.optima.observation.on_some_lines(SHARE, FEWEST, rng)
 
     def start_about(
-        self, found: Gaussian, attempt: int, rng: np.random.Generator, tried: int = 0
+        self,
+        found: Gaussian,
+        attempt: int,
+        rng: np.random.Generator,
+        tried: int = 0,
+        at_last: bool = False,
     ) -> None:
-        """Let steps start at the mean of a distribution, if none has been tried, and at draws."""
+        """Let steps start at the mean of a distribution, if none has been tried, and at draws.
+
+        At last, where the rounds have led to nothing that fits, each start is the best of many.
+        """
         self._about = found, attempt
         optima, (few, more) = self.optima, STARTS
+        tried = max(tried, at_last)
         while not optima.is_done:
             fits, is_wide = optima.fits, optima.is_wide
-            if tried >= (more if fits else few) and not is_wide:
+            if tried >= (more if fits or at_last else few) and not is_wide:
                 return
             (own,) = rng.spawn(1)
             if tried == 0:
@@ -77,7 +86,7 @@ class Starts:
             elif fits and is_surely_right(optima.observation):
                 near = Gaussian(best(optima.found).answer.mean, NEARBY**2 * found.covariance)
                 x = near.draw(own, 2)[0]
-            elif is_wide:
+            elif is_wide or (not fits and at_last):
                 x = self._best_of_draws(found, own)
             else:
                 x = found.draw(own, 2)[0]
