@@ -4,6 +4,7 @@ A reproduction of Taylor, Sau and Das Sarma, "Machine Learning the Disorder Land
 Nanowires".
 """
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from disorder_landscape.arguments import ArgumentError
@@ -18,6 +19,7 @@ from disorder_landscape.parts import MissingPartError, needs
 
 if TYPE_CHECKING:
     from disorder_landscape.inference.infer import infer
+    from disorder_landscape.inference.inferred import sample_wires
     from disorder_landscape.inference.problem.distributions import Normal
     from disorder_landscape.inference.problem.prior import Prior
     from disorder_landscape.inference.problem.series_resistance import without_series_resistance
@@ -39,36 +41,30 @@ __all__ = [
     "local_density_of_states",
     "modes",
     "predict",
+    "sample_wires",
     "topological_visibility",
     "verify",
     "without_series_resistance",
 ]
 
 
+_IMPORTED_LATER = {
+    "Normal": ("inference", "inference.problem.distributions"),
+    "Prior": ("inference", "inference.problem.prior"),
+    "differentiable_conductance": ("learning", "learning.differentiable"),
+    "infer": ("inference", "inference.infer"),
+    "predict": ("learning", "learning.prediction"),
+    "sample_wires": ("inference", "inference.inferred"),
+    "verify": ("inference", "inference.verify"),
+    "without_series_resistance": ("inference", "inference.problem.series_resistance"),
+}
+"""What the simulator does not need and may lack: the part that it belongs to, and its module."""
+
+
 def __getattr__(name: str) -> Any:
-    """Import what the simulator does not need, and may lack, only when it is asked for."""
-    if name == "infer":
-        with needs("inference"):
-            from disorder_landscape.inference.infer import infer
-        return infer
-    if name in ("Normal", "Prior"):
-        with needs("inference"):
-            from disorder_landscape.inference.problem import distributions, prior
-        return {"Normal": distributions.Normal, "Prior": prior.Prior}[name]
-    if name == "differentiable_conductance":
-        with needs("learning"):
-            from disorder_landscape.learning.differentiable import differentiable_conductance
-        return differentiable_conductance
-    if name == "predict":
-        with needs("learning"):
-            from disorder_landscape.learning.prediction import predict
-        return predict
-    if name == "verify":
-        from disorder_landscape.inference.verify import verify
-
-        return verify
-    if name == "without_series_resistance":
-        from disorder_landscape.inference.problem.series_resistance import without_series_resistance
-
-        return without_series_resistance
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    """Import what may be lacking only when it is asked for."""
+    if name not in _IMPORTED_LATER:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    part, module = _IMPORTED_LATER[name]
+    with needs(part):
+        return getattr(import_module(f"{__name__}.{module}"), name)

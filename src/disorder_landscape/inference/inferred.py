@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -31,16 +32,45 @@ def mean_wire(result: xr.Dataset) -> Nanowire:
 
 
 def sample_wires(result: xr.Dataset) -> list[Nanowire]:
-    """Return the wires of the samples of the posterior.
+    """Return the wires of the samples of the posterior, which can be simulated like any other.
+
+    Parameters
+    ----------
+    result : Dataset
+        What `infer` returned.
 
     Raises
     ------
     ArgumentError
-        As `mean_wire`.
+        If this is no result of `infer`, or an older version's.
     """
-    prior, potentials = prior_of_result(result), _array(result, "potential", ("sample", "site"))
-    each = zip(potentials, _samples(result, prior), strict=True)
-    return [_wire(prior, V, values) for V, values in each]
+    return [sample.wire for sample in samples_of(result)]
+
+
+class Sample(NamedTuple):
+    """A sample of an inversion, and measurements as they are if it is the truth."""
+
+    wire: Nanowire
+    measured: Sequence[Measurement]
+
+
+def samples_of(result: xr.Dataset, measured: Sequence[Measurement] = ()) -> list[Sample]:
+    """Return the samples of the posterior, and measurements at the settings that each has found.
+
+    Raises
+    ------
+    ArgumentError
+        As `sample_wires`.
+    """
+    prior, stated = prior_of_result(result), _stated(result)
+    potentials = _array(result, "potential", ("sample", "site"))
+    values = {name: _array(result, name, ("sample",)) for name in prior.unknown}
+    found = []
+    for k, V in enumerate(potentials):
+        unknown = {name: float(of[k]) for name, of in values.items()}
+        as_calibrated = [_calibrated(prior, unknown, m, stated) for m in measured]
+        found.append(Sample(_wire(prior, V, unknown), as_calibrated))
+    return found
 
 
 def usual_settings_of(result: xr.Dataset) -> dict[str, object]:
@@ -69,12 +99,6 @@ def as_calibrated(result: xr.Dataset, measurement: Measurement) -> Measurement:
         if (belief := getattr(prior, name)) is not None:
             check_agreement(name, belief, measurement.stated[name])
     return _calibrated(prior, _means(result, prior), measurement, _stated(result))
-
-
-def as_calibrated_by_samples(result: xr.Dataset, measurement: Measurement) -> list[Measurement]:
-    """Return a measurement at the settings that it has according to each sample."""
-    prior, stated = prior_of_result(result), _stated(result)
-    return [_calibrated(prior, one, measurement, stated) for one in _samples(result, prior)]
 
 
 def _calibrated(
@@ -108,14 +132,6 @@ def _stated(result: xr.Dataset) -> dict[str, float]:
         return {name: float(value) for name, value in given.items()}
     except (TypeError, ValueError, AttributeError):
         raise ArgumentError("prediction", MUST, "its attribute settings is damaged") from None
-
-
-def _samples(result: xr.Dataset, prior: Prior) -> list[dict[str, float]]:
-    """Return the unknown parameters of each sample, by name."""
-    values = {name: _array(result, name, ("sample",)) for name in prior.unknown}
-    return [
-        {name: float(of[k]) for name, of in values.items()} for k in range(result.sizes["sample"])
-    ]
 
 
 def prior_of_result(result: xr.Dataset) -> Prior:

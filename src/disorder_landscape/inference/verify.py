@@ -12,9 +12,7 @@ Each wire, control or not, is compared at the mean of V that fits best (`mismatc
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
-from typing import NamedTuple
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import xarray as xr
@@ -24,44 +22,16 @@ from disorder_landscape.arguments import (
     ArgumentError,
     check_progress,
     grid_in,
-    number_in,
     require,
     shown,
     whole_number_in,
 )
 from disorder_landscape.config import DatasetConfig
-from disorder_landscape.inference.inferred import (
-    as_calibrated,
-    as_calibrated_by_samples,
-    mean_wire,
-    prior_of_result,
-    sample_wires,
-    usual_settings_of,
-)
-from disorder_landscape.inference.problem.measurement import (
-    Measurement,
-    check_wire,
-    measurement_of,
-    simulated,
-)
-from disorder_landscape.inference.problem.observation import (
-    errors_variance,
-    noise_of_channels,
-    stated_noise,
-)
-from disorder_landscape.inference.verification.comparison import (
-    LEAST_SAMPLES,
-    SIGNIFICANCE,
-    comparison,
-)
-from disorder_landscape.inference.verification.controls import (
-    control_wires,
-    disorder_model,
-    wires_like,
-)
+from disorder_landscape.inference.problem.observation import noise_of_channels, stated_noise
+from disorder_landscape.inference.verification.compared import compared
+from disorder_landscape.inference.verification.comparison import SIGNIFICANCE, comparison
 from disorder_landscape.inference.verification.mismatch import SHIFTS, mean_squares, simulations
-from disorder_landscape.inference.verification.predictive import predictive_p
-from disorder_landscape.model.parameters import PARAMETER_RANGES, FloatArray, Nanowire
+from disorder_landscape.inference.verification.predictive import p_of_samples
 from disorder_landscape.observables.conductance import Progress
 
 CONTROLS = 50
@@ -135,31 +105,16 @@ def verify(
     require(bool(given), "measurement", must, "there is none")
     known = config is None or isinstance(config, DatasetConfig)
     require(known, "config", "be a DatasetConfig", f"it is {shown(config)}")
-    if _is_inversion(prediction):
-        usual = usual_settings_of(prediction)
-        stated_ones = [measurement_of(one, usual) for one in given]
-        measured = [as_calibrated(prediction, one) for one in stated_ones]
-    else:
-        measured = [measurement_of(dataset) for dataset in given]
-        for measurement in measured:
-            check_wire(measurement)
-    there = np.array([np.isfinite(m.G).any(axis=(0, 1, 2)) for m in measured])
-    stated = [stated_noise(dataset.attrs, 0.0) if noise is None else noise for dataset in given]
-    noises = [noise_of_channels(one, of) for one, of in zip(stated, given, strict=True)]
-    errors = np.where(there, noises, np.nan)
     controls = whole_number_in("controls", controls, round(1 / SIGNIFICANCE) - 1, 10_000)
     seed = whole_number_in("seed", seed, 0, 2**63)
     tried = grid_in("shifts", shifts, -1.0, 1.0, "meV")
-    predicted = _predicted_wire(prediction)
-    if config is None and _is_inversion(prediction):
-        wires = [predicted, *wires_like(predicted, prior_of_result(prediction), controls, seed)]
-    else:
-        model = disorder_model(prediction, predicted, config)
-        controlled = [predicted, *control_wires(model, controls, seed)]
-        wires = [replace(wire, lead_mu=model.wire.lead_mu) for wire in controlled]
-    samples = _samples(prediction, stated_ones) if _is_inversion(prediction) else []
-    in_all = simulations(len(wires), measured, tried)
-    in_all += len(samples) * sum(m.mu.size * m.B.size for m in measured)
+    wires, measured, samples = compared(prediction, given, controls, seed, config)
+    stated = [stated_noise(dataset.attrs, 0.0) if noise is None else noise for dataset in given]
+    noises = [noise_of_channels(one, of) for one, of in zip(stated, given, strict=True)]
+    there = np.array([np.isfinite(m.G).any(axis=(0, 1, 2)) for m in measured])
+    errors = np.where(there, noises, np.nan)
+    of_samples = len(samples or ()) * sum(m.mu.size * m.B.size for m in measured)
+    in_all = simulations(len(wires), measured, tried) + of_samples
 
     def report(done: int) -> None:
         if progress is not None:
@@ -167,74 +122,7 @@ def verify(
 
     squares, shift = mean_squares(wires, measured, tried, errors, report)
     result = comparison(np.sqrt(squares), shift, errors)
-    if _is_inversion(prediction):
-        p = _p_of_samples(samples, measured, errors, np.random.default_rng([seed, 2]), report)
+    if samples is not None:
+        p = p_of_samples(samples, measured, errors, np.random.default_rng([seed, 2]), report)
         result["p_samples"] = ((), p, {"units": "1"})
     return result
-
-
-def _is_inversion(prediction: xr.Dataset) -> bool:
-    return isinstance(prediction, xr.Dataset) and "potential_mean" in prediction.variables
-
-
-class Sample(NamedTuple):
-    """A sample of an inversion, and the measurements as they are if it is the truth."""
-
-    wire: Nanowire
-    measured: Sequence[Measurement]
-
-
-def _samples(prediction: xr.Dataset, measured: Sequence[Measurement]) -> list[Sample]:
-    """Return the samples of an inversion, if it has enough of them."""
-    if prediction.sizes.get("sample", 0) < LEAST_SAMPLES:
-        return []
-    each = zip(*(as_calibrated_by_samples(prediction, m) for m in measured), strict=True)
-    return [Sample(*both) for both in zip(sample_wires(prediction), each, strict=True)]
-
-
-def _p_of_samples(
-    samples: Sequence[Sample],
-    measured: Sequence[Measurement],
-    noise: FloatArray,
-    rng: np.random.Generator,
-    progress: Callable[[int], None],
-) -> float:
-    """Return `predictive_p` of an inversion's samples, each with its own mean of V."""
-    if not samples:
-        return np.nan
-    Y = []
-    for k, m in enumerate(measured):
-        each = []
-        for sample in samples:
-            at = sample.measured[k]
-            each.append(simulated(replace(sample.wire, barrier=at.barrier), at).ravel())
-            progress(m.mu.size * m.B.size)
-        Y.append(each)
-    data = np.concatenate([m.G.ravel() for m in measured])
-    there = np.isfinite(data)
-    variance = [
-        np.broadcast_to(errors_variance(errors), m.G.shape).ravel()
-        for errors, m in zip(noise, measured, strict=True)
-    ]
-    found = np.concatenate(Y, axis=1)[:, there]
-    return predictive_p(found, data[there], np.concatenate(variance)[there], rng)
-
-
-def _predicted_wire(prediction: xr.Dataset) -> Nanowire:
-    """Return the wire that was predicted, or the mean of what an inversion has found."""
-    is_dataset = isinstance(prediction, xr.Dataset)
-    is_old = is_dataset and "member" in prediction.dims
-    must = "have the dim sample, if it is the result of an inversion"
-    require(not is_old, "prediction", must, "an older version made it: run infer again")
-    must = "hold the potential and alpha of one wire, as `landscape predict` writes them"
-    if _is_inversion(prediction):
-        return mean_wire(prediction)
-    for name, dims in {"potential": ("site",), "alpha": ()}.items():
-        is_there = is_dataset and name in prediction.variables
-        require(is_there, "prediction", must, f"it lacks {name}")
-        found = prediction[name].dims
-        require(found == dims, "prediction", must, f"the dims of {name} are {found}")
-    V, alpha = (prediction[name] for name in ("potential", "alpha"))
-    return Nanowire(
-        V.to_numpy(), alpha=number_in("alpha", alpha.to_numpy(), *PARAMETER_RANGES["alpha"])
-    )

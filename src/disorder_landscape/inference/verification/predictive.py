@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
 import numpy as np
 
+from disorder_landscape.inference.inferred import Sample
+from disorder_landscape.inference.problem.measurement import Measurement, simulated
+from disorder_landscape.inference.problem.observation import errors_variance
 from disorder_landscape.model.parameters import FloatArray
 
 
@@ -29,3 +35,31 @@ def predictive_p(
     mean, both = Y.mean(axis=0), Y.var(axis=0, ddof=1) + variance
     chi_square = ((np.vstack([data, replicates]) - mean) ** 2 / both).sum(axis=1)
     return float((chi_square >= chi_square[0]).mean())
+
+
+def p_of_samples(
+    samples: Sequence[Sample],
+    measured: Sequence[Measurement],
+    noise: FloatArray,
+    rng: np.random.Generator,
+    progress: Callable[[int], None],
+) -> float:
+    """Return `predictive_p` of an inversion's samples, each with its own mean of V; NaN of none."""
+    if not samples:
+        return np.nan
+    Y = []
+    for k, m in enumerate(measured):
+        each = []
+        for sample in samples:
+            at = sample.measured[k]
+            each.append(simulated(replace(sample.wire, barrier=at.barrier), at).ravel())
+            progress(m.mu.size * m.B.size)
+        Y.append(each)
+    data = np.concatenate([m.G.ravel() for m in measured])
+    there = np.isfinite(data)
+    variance = [
+        np.broadcast_to(errors_variance(errors), m.G.shape).ravel()
+        for errors, m in zip(noise, measured, strict=True)
+    ]
+    found = np.concatenate(Y, axis=1)[:, there]
+    return predictive_p(found, data[there], np.concatenate(variance)[there], rng)
