@@ -112,6 +112,7 @@ def test_every_parameter_is_a_field_of_the_prior_and_enters():
     [
         ({"components": 0}, "components must be a number from 1 to 59"),
         ({"components": 60}, "components must be a number from 1 to 59"),
+        ({"components": "All"}, 'V of every site ."all" in a file., but it is .All'),
         ({"g": (30, 20)}, "g must have two finite .* smaller one first, .* they are 30 and 20"),
         ({"g": (20, 20)}, "g must have two finite numbers"),
         ({"g": (20, np.nan)}, "g must have two finite numbers"),

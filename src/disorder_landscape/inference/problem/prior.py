@@ -111,6 +111,9 @@ class Prior:
 
     def __post_init__(self) -> None:
         checked: dict[str, Any] = {"sites": whole_number_in("sites", self.sites, 2, MOST_SITES)}
+        must = f'be a whole number, or None for V of every site ("{ALL}" in a file)'
+        is_word = isinstance(self.components, str)
+        require(not is_word, "components", must, f"it is {shown(self.components)}")
         if self.components is not None:
             checked["components"] = whole_number_in(
                 "components", self.components, 1, checked["sites"] - 1
