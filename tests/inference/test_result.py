@@ -9,10 +9,11 @@ from scipy.stats import multivariate_normal
 import disorder_landscape as dl
 from disorder_landscape import ArgumentError
 from disorder_landscape.inference.inferred import mean_wire, sample_wires
+from disorder_landscape.inference.maxima import maxima_of
 from disorder_landscape.inference.optimum import Optimum
 from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.problem.distributions import Normal, Uniform
-from disorder_landscape.inference.report import summary
+from disorder_landscape.inference.report import shares_as_text, summary
 from disorder_landscape.inference.result import at_limit, evidence, left_open, moments
 from disorder_landscape.model.quantities import CONDUCTANCES
 from linear_data import DATA, SIZE, UNKNOWNS, posterior
@@ -55,6 +56,24 @@ def test_it_is_said_what_the_data_leave_open():
     assert said["not_fixed"] == "1 of 4 combinations of the disorder's unknowns, alpha"
     assert said["not_told_apart"] == "mean and alpha (-0.970)"
     assert left_open(UNKNOWNS, 1e-4 * np.eye(SIZE)) == {"not_fixed": "", "not_told_apart": ""}
+
+
+@pytest.mark.parametrize(
+    ("share", "listed", "words"),
+    [
+        ([0.03, 0.97], [0.97], None),
+        ([0.37, 0.03, 0.6], [0.6, 0.37], "60 and 37 % of the posterior"),
+        ([0.2] * 5, [0.2] * 5, "20, 20, 20 and 20 % of the posterior, and so on"),
+    ],
+)
+def test_maxima_that_hold_most_of_the_posterior_are_said(linear, share, listed, words):
+    answer = posterior(linear)
+    optima = [Optimum(answer, linear.data, -2 * np.log(one), 0.0) for one in share]
+    found = maxima_of(linear, Outcome(optima))
+    assert_allclose(found["share"], listed)
+    assert found["alpha_maxima"].shape == (len(listed),)
+    if words is not None:
+        assert shares_as_text(found) == words
 
 
 @pytest.fixture(scope="module")

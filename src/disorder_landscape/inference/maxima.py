@@ -10,12 +10,12 @@ from disorder_landscape.inference.posterior.samples import posterior_shares
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.problem.parameters import BY_NAME
 
-MENTIONED = 0.05
-"""Maxima with at least this share of the posterior are said, and the one with the largest."""
+MOST_OF_IT = 0.95
+"""As many maxima are said as hold this share of the posterior together."""
 
 
 def maxima_of(observation: Observation, outcome: Outcome) -> xr.Dataset:
-    """Return the wires at the maxima of the posterior, the one with the largest share first.
+    """Return the wires at the maxima that hold most of the posterior, the largest share first.
 
     Returns
     -------
@@ -25,7 +25,7 @@ def maxima_of(observation: Observation, outcome: Outcome) -> xr.Dataset:
     """
     share = posterior_shares(observation, outcome.optima, outcome.importance_samples)
     order = np.argsort(-share, kind="stable")
-    order = order[share[order] >= min(MENTIONED, share.max())]
+    order = order[: 1 + np.searchsorted(np.cumsum(share[order]), MOST_OF_IT)]
     X = np.stack([outcome.optima[k].answer.mean for k in order])
     unknowns = observation.unknowns
     V = unknowns.potential(X)

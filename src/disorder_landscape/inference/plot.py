@@ -21,6 +21,7 @@ from disorder_landscape.inference.plot_maps import (
 from disorder_landscape.inference.problem.distributions import Distribution
 from disorder_landscape.inference.problem.measurement import Measurement
 from disorder_landscape.inference.report import (
+    SAID,
     error_bar,
     has_several_maxima,
     parameter_with_std,
@@ -124,10 +125,12 @@ def _potential(panel: Any, result: xr.Dataset) -> None:
     if not has_several_maxima(result):
         panel.set_title("mean of the posterior")
         return
-    for share, one in zip(result["share"], result["potential_maxima"], strict=True):
-        panel.plot(site, one, lw=0.6, label=f"{100 * share:.0f} %")
+    maxima = zip(result["share"], result["potential_maxima"], strict=True)
+    for number, (share, one) in enumerate(maxima):
+        label = f"{100 * share:.0f} %" if number < SAID else None
+        panel.plot(site, one, lw=0.6, label=label)
     panel.set_title("mean of the posterior (black), and its maxima with their shares of it")
-    _legend_on_top(panel, ncols=8)
+    _legend_on_top(panel, ncols=SAID)
 
 
 def _potential_std(panel: Any, result: xr.Dataset) -> None:

@@ -15,6 +15,9 @@ from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED, NOT_D
 SURE = 0.95
 """What at least this share of the samples has is taken for sure."""
 
+SAID = 4
+"""Of so many maxima of the posterior the shares are said."""
+
 NOT_TO_BE_TRUSTED = "so neither error bars nor P(topological) are to be trusted"
 
 
@@ -74,9 +77,11 @@ def has_several_maxima(result: xr.Dataset) -> bool:
 
 
 def shares_as_text(result: xr.Dataset) -> str:
-    """Return the shares of the posterior that its maxima have, where there are several."""
-    *others, last = (f"{100 * share:.0f}" for share in result["share"].to_numpy())
-    return f"{', '.join(others)} and {last} %"
+    """Return as words the shares of the posterior that its maxima have, where there are several."""
+    shares = result["share"].to_numpy()
+    *others, last = (f"{100 * share:.0f}" for share in shares[:SAID])
+    words = f"{', '.join(others)} and {last} % of the posterior"
+    return words if shares.size <= SAID else f"{words}, and so on"
 
 
 def verdict_sentence(result: xr.Dataset) -> str:
@@ -90,7 +95,7 @@ def verdict_sentence(result: xr.Dataset) -> str:
         explain = "this wire explains the data within their noise"
         if has_several_maxima(result):
             explain = f"{result.sizes['maximum']} wires explain the data within their noise, with "
-            explain += f"{shares_as_text(result)} of the posterior"
+            explain += shares_as_text(result)
         return f"Converged: {explain}; {known}."
     reason = {
         NOT_CONVERGED: "a better answer may have been missed",
@@ -156,7 +161,7 @@ def summary(result: xr.Dataset) -> list[str]:
         f"error bar of V  {error_bar(result):.3g} µeV, root mean square over the sites",
     ]
     if has_several_maxima(result):
-        said = f"{result.sizes['maximum']}, with {shares_as_text(result)} of the posterior"
+        said = f"{result.sizes['maximum']}, with {shares_as_text(result)}"
         lines.append(f"maxima          {said}; the mean of V is none of them")
     for name, belief in prior_of_result(result).unknown.items():
         known = prior_as_text(belief)
