@@ -87,10 +87,13 @@ def test_simulate_draws_the_same_potential_for_the_same_seed(monkeypatch, capsys
         (["--B", "x"], "Argument B must be a number, a list"),
         (["--solver", "magic"], "Argument solver must be 'fast' or 'kwant'"),
         (["--sites", "1"], "Argument sites must be a number from 2 to 100000, but it is 1."),
-        (["--components", "400"], "Argument components must be from 0 to 299, but it is 400."),
+        (["--components", "400", "--seed", "1"], "components must be a number from 0 to 299"),
+        (["--components", "3"], "components must come with --seed, which draws them"),
+        (["--components", "3", "--potential", "short.csv"], "components must come with --seed"),
         (["--potential", "no.csv"], "there is no 'no.csv'"),
-        (["--potential", "words.csv"], "Argument potential must be a .csv, .npy or .nc file"),
-        (["--potential", "short.csv"], "Argument potential must have 300 sites, but it has 2."),
+        (["--potential", "words.csv"], "line 2 ends with 'first', which is no number"),
+        (["--potential", "short.csv", "--sites", "3"], "must have 3 sites, as --sites says, but"),
+        (["--potential", "row.csv"], "fewer than two lines with a number, one for each site"),
         (["--potential", "nan.csv"], "Argument potential must be finite"),
         (["--potential", "broken.npy"], "Argument potential must be a .csv, .npy or .nc file"),
         (["--potential", "broken.nc"], "Argument file must be a netCDF file"),
@@ -106,6 +109,7 @@ def test_bad_input_is_one_sentence(monkeypatch, capsys, tmp_path, options, says)
     monkeypatch.chdir(tmp_path)
     (tmp_path / "words.csv").write_text("V\nfirst\nsecond\n")
     (tmp_path / "short.csv").write_text("0.1\n0.2\n")
+    (tmp_path / "row.csv").write_text("0.1,0.2,0.3\n")
     (tmp_path / "nan.csv").write_text("\n".join(["nan"] * 300))
     (tmp_path / "broken.npy").write_bytes(b"\x93NUMPY\x01")
     (tmp_path / "broken.nc").write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(100))
@@ -122,7 +126,8 @@ def test_bad_input_is_one_sentence(monkeypatch, capsys, tmp_path, options, says)
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("[dataset]\nrealisations = 3\n", "the key dataset.realizations"),
+        ("[dataset]\nsites = 30\n", "it lacks the key dataset.realizations"),
+        ("[dataset]\nrealisations = 3\n", "it has the unknown key dataset.realisations"),
         ("[dataset]\nrealizations = 3\nspeed = 1\n", "the unknown key dataset.speed"),
         ("[dataset]\nrealizations = -3\n", "dataset.realizations is wrong"),
         ("[dataset]\nrealizations = 3\nbias = []\n", "bias must be a non-empty"),

@@ -131,8 +131,8 @@ def grid_in(
     require(bool(np.isfinite(grid).all()), name, must, "it holds NaN or infinity")
     require(bool((grid[1:] > grid[:-1]).all()), name, must, "it is not sorted in increasing order")
     for value in (grid[0], grid[-1]):
-        within = f"lie between {low:.6g} and {high:.6g} {unit}"
-        require(low <= value <= high, name, within, f"it reaches {value:.6g}")
+        within = f"lie between {low:.9g} and {high:.9g} {unit}"
+        require(low <= value <= high, name, within, f"it reaches {value:.9g}")
     return grid
 
 

@@ -249,7 +249,7 @@ def checked(
     try:
         return model.model_validate(read_toml(path, name) if content is None else content)
     except ValidationError as error:
-        first = error.errors()[0]
+        first = min(error.errors(), key=lambda one: one["type"] != "extra_forbidden")  # a typo
         # The tag of a union is no key.
         place = first["loc"][1:] if issubclass(model, RootModel) else first["loc"]
         key = ".".join(str(part) for part in place) or "the file"
@@ -258,7 +258,9 @@ def checked(
             "missing": "it lacks the key {key}",
         }
         message = messages.get(first["type"], "{key} is wrong: {message}")
-        but = message.format(key=key, message=first["msg"].removeprefix("Value error, "))
+        but = message.format(
+            key=key, message=first["msg"].removeprefix("Value error, ").rstrip(".")
+        )
         raise ArgumentError(name, f"be right ('{path}')", but) from None
 
 

@@ -14,17 +14,25 @@ from disorder_landscape.arguments import ArgumentError, numbers_of, require, who
 from disorder_landscape.dataset.store import read_dataset
 from disorder_landscape.files import check_netcdf, check_writable, write_picture
 from disorder_landscape.model.disorder import disorder_realization
-from disorder_landscape.model.parameters import MOST_SITES, FloatArray, Nanowire, checked_potential
+from disorder_landscape.model.parameters import (
+    MOST_SITES,
+    SITES,
+    FloatArray,
+    Nanowire,
+    checked_potential,
+)
 from disorder_landscape.model.quantities import CONDUCTANCES, with_units
 from disorder_landscape.observables.conductance import Progress, conductance
 from disorder_landscape.observables.visibility import topological_visibility
 from disorder_landscape.parts import needs
 
+COMPONENTS = 5
+"""Of the disorder that a command draws, unless it says otherwise: the paper's smaller number."""
 NOT_NUMBERS = (ValueError, EOFError, SyntaxError, TokenError, TypeError, OverflowError)
 """What NumPy raises for files that are damaged or something else."""
 
 
-def read_potential(path: Path, sites: int) -> FloatArray:
+def read_potential(path: Path) -> FloatArray:
     """Read V_dis(x) in meV from a file.
 
     Parameters
@@ -32,13 +40,11 @@ def read_potential(path: Path, sites: int) -> FloatArray:
     path : Path
         .npy (a vector), .nc (the variable potential), or text with one site per line, the potential
         in the last comma-separated column, with or without a header line.
-    sites : int
-        Number of sites it must have.
 
     Raises
     ------
     ArgumentError
-        If the file cannot be read as that, or holds another number of sites or NaN.
+        If the file cannot be read as that, or holds NaN.
     """
     must = "be a .csv, .npy or .nc file of one potential value in meV per site"
     if path.suffix == ".nc":
@@ -51,7 +57,7 @@ def read_potential(path: Path, sites: int) -> FloatArray:
         except (OSError, *NOT_NUMBERS) as error:
             reason = str(error).splitlines()[0]
             raise ArgumentError("potential", must, f"'{path}' is not: {reason}") from None
-    return checked_potential(V, sites)
+    return checked_potential(V)
 
 
 def _read_npy(path: Path) -> FloatArray:
@@ -61,11 +67,18 @@ def _read_npy(path: Path) -> FloatArray:
 
 def _read_text(path: Path) -> FloatArray:
     lines = path.read_text("utf-8").splitlines()
-    rows = [line.split(",")[-1].strip() for line in lines if line.strip()]
-    try:
-        return np.array([float(row) for row in rows])
-    except ValueError:
-        return np.array([float(row) for row in rows[1:]])  # the first line is a header
+    last = {n: line.split(",")[-1].strip() for n, line in enumerate(lines, 1) if line.strip()}
+    values = []
+    for number, word in last.items():
+        try:
+            values.append(float(word))
+        except ValueError:
+            if number != min(last):  # the first line may be a header
+                message = f"line {number} ends with '{word}', which is no number"
+                raise ValueError(message) from None
+    if len(values) < 2:
+        raise ValueError("it holds fewer than two lines with a number, one for each site")
+    return np.array(values)
 
 
 def parse_grid(name: str, text: str) -> FloatArray:
@@ -100,28 +113,47 @@ def parse_barrier(text: str) -> tuple[float, float]:
 
 
 def chosen_wire(
-    potential: Path | None, seed: int | None, components: int, sites: int, **parameters: Any
+    potential: Path | None,
+    seed: int | None,
+    components: int | None,
+    sites: int | None,
+    **parameters: Any,
 ) -> Nanowire:
     """Return the wire that the options of a command describe.
 
     Its potential is that of a file, or is drawn with a seed, or is zero.
 
+    Parameters
+    ----------
+    potential : Path, optional
+    seed : int, optional
+    components : int, optional
+        Of a drawn potential; by default the paper's five.
+    sites : int, optional
+        By default those of the file, or the paper's.
+    **parameters
+        Others of `Nanowire`.
+
     Raises
     ------
     ArgumentError
-        If both are given, or one of the numbers cannot be.
+        If they do not go together, or one of the numbers cannot be.
     """
     both = "one of --potential and --seed at most"
     require(potential is None or seed is None, "potential", f"come with {both}", "both are given")
-    sites = whole_number_in("sites", sites, 2, MOST_SITES)
-    must = f"be from 0 to {sites - 1}"
-    require(0 <= components < sites, "components", must, f"it is {components}")
+    drawn = seed is not None or not components
+    require(drawn, "components", "come with --seed, which draws them", "there is none")
     if potential is not None:
-        V = read_potential(potential, sites)
-    elif seed is None or components == 0:
-        V = np.zeros(sites)
-    else:
-        V = disorder_realization(np.random.default_rng(seed), components, sites)[1]
+        V = read_potential(potential)
+        fits = sites in (None, V.size)
+        require(fits, "potential", f"have {sites} sites, as --sites says", f"it has {V.size}")
+        return Nanowire(V, **parameters)
+    sites = whole_number_in("sites", SITES if sites is None else sites, 2, MOST_SITES)
+    components = COMPONENTS if components is None else components
+    components = whole_number_in("components", components, 0, sites - 1)
+    if seed is None or components == 0:
+        return Nanowire(np.zeros(sites), **parameters)
+    V = disorder_realization(np.random.default_rng(seed), components, sites)[1]
     return Nanowire(V, **parameters)
 
 
@@ -217,5 +249,8 @@ def plot_simulation(result: xr.Dataset, path: Path) -> None:
         else:
             G.plot.pcolormesh(x=x, y=y, ax=panel, cmap="RdBu_r", vmax=float(abs(G).max()) or 1.0)
         panel.set_title("")
-    figure.suptitle(f"{axes[0]} = {float(shown[axes[0]]):.3g} {result[axes[0]].attrs['units']}")
+    title = f"{axes[0]} = {float(shown[axes[0]]):.3g} {result[axes[0]].attrs['units']}"
+    if theta := result.attrs.get("theta"):
+        title += f", field at {np.degrees(theta):.3g}° to the wire"
+    figure.suptitle(title)
     write_picture(path, figure, dpi=150)

@@ -411,7 +411,11 @@ def test_a_network_says_what_errors_it_knows():
     ("misfit", "says"),
     [
         ([0.0101, 0.01, 0.0099, np.nan], "10 times the noise in all channels alike"),
-        ([0.0003, 0.0003, 0.00031, 0.0003], "was stated: smaller, and so the error bars"),
+        ([0.0006, 0.0006, 0.00061, 0.0006], "was stated: smaller, and so the error bars"),
+        (
+            [0.0001, 0.0004, 0.00031, 0.0001],
+            "0.4 times the noise at most: the noise may be smaller",
+        ),
         ([0.00102, 0.00099, 0.001, 0.001], ""),
         ([0.01, 0.02, 0.01, 0.02], ""),  # something else is wrong
         ([np.nan] * 4, ""),

@@ -122,6 +122,7 @@ def test_every_parameter_is_a_field_of_the_prior_and_enters():
         ({"g": {"mean": 25}}, "g must be a number, a pair"),
         ({"g": {"mean": 25, "std": 0}}, "g must be a distribution of some width"),
         ({"g": Normal(5, 2)}, "g must stay from 0 to 100, but it reaches from -5 to 15"),
+        ({"lever_arm": Normal(1, 0.4)}, "from 1e-06 to 1e.06 meV per unit, but it reaches from -1"),
         ({"gamma": -0.1}, "gamma must be a number from 0 to 10 meV"),
         ({"amplitude": -1}, "amplitude must be a number"),
         ({"temperature": (0.05, 100)}, "temperature must stay from 0 to 10 K"),
@@ -292,3 +293,15 @@ def test_unknowns_of_a_device_are_found_again():
         step = 1e-6 * np.eye(x.size)
         numerical = (unknowns.labels(x + step) - unknowns.labels(x - step)) / 2e-6
         assert_allclose(slopes, numerical.T, rtol=1e-5, atol=1e-8)
+
+
+def test_a_normal_distribution_ends_where_the_range_does():
+    """… if that is three standard deviations away or more; otherwise five away."""
+    prior = Prior(3, SITES, temperature=Normal(0.05, 0.0125), g=Normal(25, 1))
+    temperature, g = prior.unknown["temperature"], prior.unknown["g"]
+    assert temperature.range == pytest.approx((0.0, 0.1))
+    assert g.range == (20, 30)
+    xi = np.array([-9.0, -4.5, 0.0, 1.0, 4.5])
+    np.testing.assert_allclose(temperature.value(xi), [0.0, 0.0, 0.05, 0.0625, 0.1], atol=1e-12)
+    np.testing.assert_allclose(temperature.standard([0.0, 0.0625]), [-4.0, 1.0])
+    assert Prior.from_mapping(prior.to_dict()) == prior

@@ -19,24 +19,30 @@ from disorder_landscape.cli.wire_options import (
     Delta0,
     Gamma,
     LandeG,
+    Lattice,
+    LeadMu,
+    Mass,
     PotentialFile,
     PotentialSeed,
     Sites,
 )
-from disorder_landscape.model.parameters import SITES, TEMPERATURE, Nanowire
+from disorder_landscape.model.parameters import TEMPERATURE, Nanowire
 
 
 def modes(
     potential: PotentialFile = None,
     seed: PotentialSeed = None,
-    components: Components = 5,
-    sites: Sites = SITES,
+    components: Components = None,
+    sites: Sites = None,
+    mass: Mass = Nanowire.mass,
+    lattice: Lattice = Nanowire.lattice,
     alpha: Alpha = Nanowire.alpha,
     g: LandeG = Nanowire.g,
     gamma: Gamma = Nanowire.gamma,
     delta0: Delta0 = Nanowire.delta0,
     critical_field: CriticalField = Nanowire.critical_field,
     barrier: Barrier = "15",
+    lead_mu: LeadMu = Nanowire.lead_mu,
     mu: Annotated[float, typer.Option(help="Chemical potential in meV.")] = 0.0,
     B: Annotated[float, typer.Option("--B", help="Magnetic field in T.")] = 0.6,
     theta: Angle = 0.0,
@@ -65,12 +71,15 @@ def modes(
         seed,
         components,
         sites,
+        mass=mass,
+        lattice=lattice,
         alpha=alpha,
         g=g,
         gamma=gamma,
         delta0=delta0,
         critical_field=critical_field,
         barrier=simulation.parse_barrier(barrier),
+        lead_mu=lead_mu,
     )
     angle = math.radians(number_in("theta", theta, -360.0, 360.0, "degrees"))
     energies = simulation.parse_grid("energy", energy)

@@ -20,25 +20,33 @@ from disorder_landscape.cli.wire_options import (
     Dissipation,
     Gamma,
     LandeG,
+    Lattice,
+    LeadMu,
+    Mass,
+    ParentDissipation,
     PotentialFile,
     PotentialSeed,
     Sites,
 )
-from disorder_landscape.model.parameters import SITES, Nanowire
+from disorder_landscape.model.parameters import Nanowire
 
 
 def simulate(
     potential: PotentialFile = None,
     seed: PotentialSeed = None,
-    components: Components = 5,
-    sites: Sites = SITES,
+    components: Components = None,
+    sites: Sites = None,
+    mass: Mass = Nanowire.mass,
+    lattice: Lattice = Nanowire.lattice,
     alpha: Alpha = Nanowire.alpha,
     g: LandeG = Nanowire.g,
     gamma: Gamma = Nanowire.gamma,
     delta0: Delta0 = Nanowire.delta0,
     critical_field: CriticalField = Nanowire.critical_field,
     dissipation: Dissipation = Nanowire.dissipation,
+    parent_dissipation: ParentDissipation = None,
     barrier: Barrier = "15",
+    lead_mu: LeadMu = Nanowire.lead_mu,
     temperature: Annotated[float, typer.Option(help="In K; 0 is the bare conductance.")] = 0.05,
     mu: Annotated[str, typer.Option(help="Chemical potentials in meV.")] = "0",
     B: Annotated[str, typer.Option("--B", help="Magnetic fields in T.")] = "0:0.8:81",
@@ -66,13 +74,17 @@ def simulate(
         seed,
         components,
         sites,
+        mass=mass,
+        lattice=lattice,
         alpha=alpha,
         g=g,
         gamma=gamma,
         delta0=delta0,
         critical_field=critical_field,
         dissipation=dissipation,
+        parent_dissipation=parent_dissipation,
         barrier=simulation.parse_barrier(barrier),
+        lead_mu=lead_mu,
     )
     angle = math.radians(number_in("theta", theta, -360.0, 360.0, "degrees"))
     grids = {

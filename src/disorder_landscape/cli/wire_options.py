@@ -8,15 +8,22 @@ from typing import Annotated
 import typer
 
 PotentialFile = Annotated[
-    Path | None, typer.Option(help="V_dis per site in meV: .csv, .npy or .nc file.")
+    Path | None,
+    typer.Option(help="V_dis per site in meV: .csv (a line each), .npy or .nc (potential)."),
 ]
 PotentialSeed = Annotated[
     int | None, typer.Option(min=0, help="Draw the potential with this seed instead.")
 ]
 Components = Annotated[
-    int, typer.Option(help="Disorder components of a drawn potential; 0: pristine.")
+    int | None,
+    typer.Option(help="Disorder components of a drawn potential; 0: pristine.  [default: 5]"),
 ]
-Sites = Annotated[int, typer.Option(help="Sites of the wire, 10 nm each.")]
+Sites = Annotated[
+    int | None, typer.Option(help="Sites of the wire.  [default: those of the file, or 300]")
+]
+Mass = Annotated[float, typer.Option(help="Effective mass in electron masses.")]
+Lattice = Annotated[float, typer.Option(help="Lattice spacing in nm.")]
+LeadMu = Annotated[float, typer.Option(help="Chemical potential of the leads in meV.")]
 Alpha = Annotated[float, typer.Option(help="Spin-orbit coupling in meV nm.")]
 LandeG = Annotated[float, typer.Option("--g", help="Lande g-factor.")]
 Gamma = Annotated[float, typer.Option(help="Coupling to the superconductor in meV.")]
@@ -26,6 +33,10 @@ CriticalField = Annotated[
 ]
 Dissipation = Annotated[
     float, typer.Option(help="Broadening of all levels in meV; with it there is no T_IV.")
+]
+ParentDissipation = Annotated[
+    float | None,
+    typer.Option(help="The same of the superconductor in meV.  [default: the wire's]"),
 ]
 Barrier = Annotated[
     str, typer.Option(help="Barrier on the end sites in meV: one number, or left,right.")

@@ -16,7 +16,9 @@ UNTRAINED = 2.0
 ALIKE = 1.1
 """Misfits are those of noise if they differ by less than this factor between the channels, …"""
 OTHERWISE = 1.25
-"""… and that noise is not the stated one if they are more or less than it by this factor."""
+"""… and that noise is not the stated one if they are more or less than it by this factor. …"""
+FAR_LESS = 0.5
+"""… If all misfits are less than this share of it, it is not either, whatever they are."""
 
 
 def parse_noise(text: str) -> float | dict[str, float]:
@@ -58,7 +60,14 @@ def stated_noise_hint(misfit: FloatArray, noise: FloatArray, excess: float) -> s
     """
     there = np.isfinite(misfit) & (noise > 0)
     times = misfit[there] / noise[there]
-    if times.size == 0 or times.max() > ALIKE * times.min() or abs(excess) < TOLERATED:
+    if times.size == 0 or abs(excess) < TOLERATED:
+        return ""
+    if times.max() < FAR_LESS:
+        return (
+            f"The misfit is {times.max():.2g} times the noise at most: the noise may be smaller "
+            "than was stated, and so the error bars."
+        )
+    if times.max() > ALIKE * times.min():
         return ""
     if 1 / OTHERWISE < times.mean() < OTHERWISE or (times.size == 1 and times.mean() > 1):
         return ""

@@ -141,7 +141,7 @@ def _potential_std(panel: Any, result: xr.Dataset) -> None:
         between = np.percentile(off, [low, high], axis=0)
         label = f"{high - low} % of the samples"
         panel.fill_between(site, *between, color="C0", alpha=alpha, lw=0, label=label)
-    panel.set(xlabel="site", ylabel="off [µeV]", xlim=(site[0], site[-1]))
+    panel.set(xlabel="site", ylabel="deviation\n[µeV]", xlim=(site[0], site[-1]))
     bar = f"error bar of V: {plain(error_bar(result))} µeV, root mean square"
     panel.set_title(f"samples minus mean; {bar}")
     _legend_on_top(panel, ncols=2)

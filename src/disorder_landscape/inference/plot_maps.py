@@ -16,6 +16,8 @@ from disorder_landscape.model.quantities import CONDUCTANCES
 
 RESIDUAL = {"cmap": "RdBu_r", "vmin": -4, "vmax": 4}
 """How residuals are shown, in standard deviations of all errors, the simulation's included."""
+NOT_MEASURED = "0.8"
+"""Colour of what was not measured."""
 BELOW = -0.03
 """Where the data's points are beside a curve of P(topological)."""
 SYMBOLS = {"mu": (r"$\mu$", "meV"), "B": ("$B$", "T"), "bias": ("bias", "meV")}
@@ -72,9 +74,10 @@ def _compared(result: xr.Dataset, measurement: Measurement, channel: int) -> dic
     symbol, unit = SYMBOLS.get(other, (other, ""))
     value = f"{symbol} = {axes[other][at]:g} {unit}".strip()
     G_name, all_errors = rf"$G_\mathrm{{{name[2:]}}}$", r"$\sigma$ of all errors"
+    gaps = " (grey: not)" if G.mask.any() else ""
     off = f"{G_name}, measured − explained"
     return {
-        "measured": Shown(grid, G, f"{G_name} at {value}, measured", "$e^2/h$", norm),
+        "measured": Shown(grid, G, f"{G_name} at {value}, measured{gaps}", "$e^2/h$", norm),
         "explained": Shown(grid, answer, f"{G_name}, explained", "$e^2/h$", norm),
         "residual": Shown(grid, (G - answer) / std, off, all_errors, RESIDUAL),
     }
@@ -131,6 +134,7 @@ def _row_of_maps(figure: Any, panels: Mapping[str, Any], shown: Mapping[str, Sho
         if all(axis.size > 1 for axis in one.grid.values()):
             x, y = one.grid[along], one.grid[upward]
             how = {"shading": "nearest", "rasterized": True}
+            panel.set_facecolor(NOT_MEASURED)
             image = panel.pcolormesh(x, y, one.values, **how, **one.options)
             panel.set_ylabel("" if column else _label(upward))
             figure.colorbar(image, ax=panel, label=one.unit, location="bottom", aspect=20)

@@ -157,8 +157,12 @@ def load_model(folder: str | Path) -> TrainedModel:
         If the folder is not one of a finished training, or a file in it is damaged.
     """
     folder = existing_folder(folder)
-    finished = (folder / METRICS).exists()
-    require(finished, "model", _MODEL, f"the training in '{folder}' is not finished")
+    if not (folder / METRICS).exists():
+        inside = next(folder.glob(f"*/{METRICS}"), None)
+        but = f"there is no finished training in '{folder}'"
+        if inside is not None:
+            but += f", but there is one in '{inside.parent}'"
+        raise ArgumentError("model", _MODEL, but)
     config = load_model_config(folder)
     scaler = read_model_file(folder / SCALER)
     try:

@@ -229,18 +229,17 @@ def checked_temperature(temperature: object) -> float:
     return T
 
 
-def checked_potential(potential: ArrayLike, sites: int | None = None) -> FloatArray:
+def checked_potential(potential: ArrayLike) -> FloatArray:
     """Return a potential as a read-only vector of floats.
 
     Raises
     ------
     ArgumentError
-        If it is not a finite vector of at least two sites, or not of the given number of sites.
+        If it is not a finite vector of at least two sites.
     """
     must = "be a vector of one number in meV per site, at least two"
     V = reals("potential", potential, must)
     require(V.ndim == 1 and V.size >= 2, "potential", must, f"it has shape {V.shape}")
-    require(sites in (None, V.size), "potential", f"have {sites} sites", f"it has {V.size}")
     require(bool(np.isfinite(V).all()), "potential", "be finite", "it holds NaN or infinity")
     must = "stay within ±1000 meV"
     require(bool((abs(V) <= 1e3).all()), "potential", must, f"it reaches {abs(V).max():g} meV")

@@ -10,7 +10,7 @@ AXES = ("mu", "B", "bias")
 """Order of the axes over which they are measured, the configurations K."""
 QUANTITIES = {
     "mu": ("chemical potential", "meV"),
-    "B": ("magnetic field along the wire", "T"),
+    "B": ("magnetic field", "T"),
     "bias": ("bias voltage", "meV"),
     "lead": ("left or right lead", "1"),
     "realization": ("index of the realization", "1"),
@@ -53,7 +53,7 @@ QUANTITIES = {
     "P_topological": ("share of the samples with det r < 0", "1"),
     "sample": ("sample of the posterior", "1"),
     "map_mu": ("chemical potential", "meV"),
-    "map_B": ("magnetic field along the wire", "T"),
+    "map_B": ("magnetic field", "T"),
 }
 """Long name and units of each variable and coordinate."""
 

@@ -15,7 +15,6 @@ from disorder_landscape.model.hamiltonian import FULL_TURN
 from disorder_landscape.model.parameters import (
     BOLTZMANN,
     TEMPERATURE,
-    FloatArray,
     Nanowire,
     checked_temperature,
 )
@@ -49,13 +48,14 @@ def conductance(
     solver : {"fast", "kwant"}
         The real recursion, or Kwant, the reference, thousands of times slower.
     energy_spacing : float, optional
-        Average over a grid of energies of at most this spacing in meV, at most kT, as the paper
-        does, instead of exactly. Kwant always does, by default at 0.5 µeV.
+        Average over a grid of energies within 10 kT of at most this spacing in meV, at most kT, as
+        the paper does, instead of exactly. What is farther away is left out, which changes sharp
+        conductances by up to 10⁻⁴ e²/h. Kwant always does so, by default at 0.5 µeV.
     progress : callable, optional
         Called with the number of pairs (μ, B) that have just been done, and that of all pairs.
     theta : float
         Angle of the field relative to the wire in radians, θ of Eq. S1. All but 0, the paper's,
-        take a route that is some fifty times slower.
+        take a slower route.
 
     Returns
     -------
@@ -68,8 +68,9 @@ def conductance(
     Raises
     ------
     ArgumentError
-        If a grid is empty, unsorted or out of range, the temperature negative, the bias or its
-        thermal window beyond the gap, the solver unknown, or the wires of unequal length.
+        If a grid is empty, unsorted or out of range, the temperature negative, the bias beyond the
+        gap (or its thermal window, with a grid of energies), the solver unknown, or the wires of
+        unequal length.
     """
     wires, solver = routes.wires_of(wire), routes.known_solver(solver)
     check_progress(progress)
@@ -106,12 +107,16 @@ def conductance(
             spacing = number_in("energy_spacing", spacing, 1e-7, kT, "meV")
             omega, weights = thermal_grid(grids["bias"], temperature, delta0, spacing)
         else:
-            omega, weights = _bare_grid(grids["bias"])
+            omega, of_bias = np.unique(abs(grids["bias"]), return_inverse=True)
+            side = (grids["bias"] < 0).astype(int)
         most = routes.energies_at_once(solver, theta) // omega.size
         for some, points, some_fields in _blocks(shape, most):
             some_wires, mus, fs = wires[some], grids["mu"][points], fields[some_fields]
             G0 = routes.bare_conductance(some_wires, mus, fs, omega, theta, solver)
-            G[some, points, some_fields] = np.einsum("wmbkse,vks->wmbve", G0, weights)
+            if temperature > 0:
+                G[some, points, some_fields] = np.einsum("wmbkse,vks->wmbve", G0, weights)
+            else:
+                G[some, points, some_fields] = G0[:, :, :, of_bias, side]
             report(G0[..., 0, 0, 0].size, error.size)
     missing = np.isnan(G).any(axis=(3, 4)).sum()
     if missing:
@@ -127,14 +132,6 @@ def conductance(
         attrs["barrier"] = wires[0].barrier
     dataset = with_units(xr.Dataset(data, coords=grids, attrs=attrs))
     return dataset.isel(realization=0) if isinstance(wire, Nanowire) else dataset
-
-
-def _bare_grid(bias: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the energies |V| and the weights that pick G₀(V), shape (bias, omega, 2)."""
-    omega, index = np.unique(abs(bias), return_inverse=True)
-    weights = np.zeros((bias.size, omega.size, 2))
-    weights[np.arange(bias.size), index, (bias < 0).astype(int)] = 1.0
-    return omega, weights
 
 
 def _blocks(shape: tuple[int, int, int], most: int) -> Iterator[tuple[slice, slice, slice]]:

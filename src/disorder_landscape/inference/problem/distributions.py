@@ -6,7 +6,7 @@ Each is a function of a standard normal number ξ, so that all unknowns together
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,8 +17,9 @@ from disorder_landscape.model.parameters import FloatArray
 
 LARGEST = 1e9
 """Mean or standard deviation that may be stated: more than any parameter may be."""
-FARTHEST = 5.0
-"""Values are taken for no more than so many standard deviations off, which is one in 2 million."""
+FARTHEST, LEAST = 5.0, 3.0
+"""Values are taken for no more than so many standard deviations off, which is one in 2 million; and
+for no more than the second, which is one in 400, where the parameter's range ends there."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,9 @@ class Uniform:
 
 @dataclass(frozen=True)
 class Normal:
-    """A normal distribution, cut where it is next to nothing.
+    """A normal distribution, cut where it is next to nothing: five standard deviations away.
+
+    A prior cuts it where the parameter's range ends, if that is three or more away.
 
     Raises
     ------
@@ -70,6 +73,7 @@ class Normal:
 
     mean: float
     std: float
+    reach: float = field(default=FARTHEST, init=False, repr=False)
 
     def __post_init__(self) -> None:
         for name, value in _moments("", self.mean, self.std).items():
@@ -78,11 +82,11 @@ class Normal:
     @property
     def range(self) -> tuple[float, float]:
         """The least and the largest value."""
-        return self.mean - FARTHEST * self.std, self.mean + FARTHEST * self.std
+        return self.mean - self.reach * self.std, self.mean + self.reach * self.std
 
     def value(self, xi: ArrayLike) -> FloatArray:
         """Return the values that standard normal numbers stand for."""
-        return np.asarray(self.mean + self.std * _within(xi))
+        return np.asarray(self.mean + self.std * _within(xi, self.reach))
 
     def slope(self, xi: ArrayLike) -> FloatArray:
         """Return the derivatives of the values."""
@@ -90,7 +94,15 @@ class Normal:
 
     def standard(self, value: ArrayLike) -> FloatArray:
         """Return the standard normal numbers of values; of those outside, the farthest."""
-        return _within((np.asarray(value) - self.mean) / self.std)
+        return _within((np.asarray(value) - self.mean) / self.std, self.reach)
+
+    def cut_to(self, low: float, high: float) -> Normal:
+        """Return it cut where a range ends, if that is far enough from the mean."""
+        farthest = min(self.mean - low, high - self.mean) / self.std if self.std > 0 else 0.0
+        found = Normal(self.mean, self.std)
+        if farthest >= LEAST:
+            object.__setattr__(found, "reach", min(FARTHEST, farthest))
+        return found
 
 
 Distribution = Uniform | Normal
@@ -98,8 +110,8 @@ Belief = float | Distribution
 """Of one parameter: its value, if it is known."""
 
 
-def _within(xi: ArrayLike) -> FloatArray:
-    return np.clip(xi, -FARTHEST, FARTHEST)
+def _within(xi: ArrayLike, reach: float = FARTHEST) -> FloatArray:
+    return np.clip(xi, -reach, reach)
 
 
 def _moments(of: str, mean: object, std: object) -> dict[str, float]:
@@ -136,6 +148,8 @@ def belief_of(name: str, given: object, low: float, high: float, unit: str) -> B
             if np.ndim(given) == 0 and not isinstance(given, str | None):  # type: ignore[arg-type]
                 raise
             raise ArgumentError(name, must, f"it is {shown(given)}") from error
+    if isinstance(given, Normal):
+        given = given.cut_to(low, high)
     least, most = given.range
     wide = bool(np.isfinite([least, most]).all()) and least < most
     require(wide, name, "be a distribution of some width", f"it is {shown(given)}")
