@@ -21,7 +21,7 @@ from disorder_landscape.model.parameters import (
     Nanowire,
     checked_potential,
 )
-from disorder_landscape.model.quantities import CONDUCTANCES, with_units
+from disorder_landscape.model.quantities import AXES, CONDUCTANCES, with_units
 from disorder_landscape.observables.conductance import Progress, conductance
 from disorder_landscape.observables.visibility import topological_visibility
 from disorder_landscape.parts import needs
@@ -233,24 +233,28 @@ def plot_simulation(result: xr.Dataset, path: Path) -> None:
     ArgumentError
         If the file cannot be written.
     """
+    import matplotlib as mpl
     from matplotlib.figure import Figure
 
-    axes = sorted(("mu", "B", "bias"), key=lambda name: result.sizes[name])
-    shown = result.isel({axes[0]: result.sizes[axes[0]] // 2})
-    y, x = sorted(axes[1:], key=["bias", "mu", "B"].index)
-    figure = Figure(figsize=(12, 3), layout="constrained")
-    panels = figure.subplots(1, 4)
-    for panel, name in zip(panels, CONDUCTANCES, strict=True):
-        G = shown[name]
-        if shown.sizes[y] == 1 or shown.sizes[x] == 1:
-            G.plot.line("k.-", x=x if shown.sizes[y] == 1 else y, ax=panel)
-        elif name in ("G_LL", "G_RR"):
-            G.plot.pcolormesh(x=x, y=y, ax=panel, vmin=0, cmap="viridis")
-        else:
-            G.plot.pcolormesh(x=x, y=y, ax=panel, cmap="RdBu_r", vmax=float(abs(G).max()) or 1.0)
-        panel.set_title("")
-    title = f"{axes[0]} = {float(shown[axes[0]]):.3g} {result[axes[0]].attrs['units']}"
+    axes = sorted(AXES, key=lambda name: result.sizes[name])
+    cut = axes[:2] if result.sizes[axes[1]] == 1 else axes[:1]
+    shown = result.isel({name: result.sizes[name] // 2 for name in cut})
+    *y, x = sorted(set(axes) - set(cut), key=["bias", "mu", "B"].index)
+    at = [f"{name} = {float(shown[name]):.3g} {result[name].attrs['units']}" for name in cut]
     if theta := result.attrs.get("theta"):
-        title += f", field at {np.degrees(theta):.3g}° to the wire"
-    figure.suptitle(title)
+        at.append(f"field at {np.degrees(theta):.3g}° to the wire")
+    figure = Figure(figsize=(12, 3), layout="constrained")
+    figure.suptitle(", ".join(at))
+    for panel, name in zip(figure.subplots(1, 4), CONDUCTANCES, strict=True):
+        G, unit = shown[name], "$e^2/h$"
+        if y:
+            local, largest = name in ("G_LL", "G_RR"), float(abs(G).max()) or 1.0
+            norm = mpl.colors.Normalize(0 if local else -largest, largest)
+            cmap = "viridis" if local else "RdBu_r"
+            bar = {"label": unit}
+            G.plot.pcolormesh(x=x, y=y[0], ax=panel, norm=norm, cmap=cmap, cbar_kwargs=bar)
+        else:
+            G.plot.line("k.-", x=x, ax=panel)
+            panel.set_ylabel(unit)
+        panel.set_title(rf"$G_\mathrm{{{name[2:]}}}$")
     write_picture(path, figure, dpi=150)

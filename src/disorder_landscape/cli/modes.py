@@ -28,6 +28,9 @@ from disorder_landscape.cli.wire_options import (
 )
 from disorder_landscape.model.parameters import TEMPERATURE, Nanowire
 
+PRINTED = 8
+"""Levels that are printed; all are in the file."""
+
 
 def modes(
     potential: PotentialFile = None,
@@ -87,7 +90,9 @@ def modes(
     write_dataset(result, output, made_here())
     if plot is not None:
         inside_wire.plot_inside(result, plot)
-    levels = ", ".join(f"{1e3 * E:.4g}" for E in result.level.to_numpy())
+    levels = ", ".join(f"{1e3 * E:.4g}" for E in result.level.to_numpy()[:PRINTED])
+    if result.sizes["mode"] > PRINTED:
+        levels += ", …"
     overlap = float(result.overlap)
     print(f"levels in µeV: {levels}; overlap of the Majorana components {overlap:.2g}")
     print(f"wrote {output}" + (f" and {plot}" if plot else ""))
