@@ -59,7 +59,8 @@ def infer(
         bool, typer.Option("--from-prior", help="Without the network's guess, on any grid.")
     ] = False,
     samples: Annotated[
-        int, typer.Option(help="Samples of the posterior that are written, an even number.")
+        int,
+        typer.Option(min=2, help="Samples of the posterior that are written, an even number."),
     ] = 64,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the ensembles.")] = 0,
     discrepancy: Annotated[

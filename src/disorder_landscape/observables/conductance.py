@@ -49,8 +49,8 @@ def conductance(
         The real recursion, or Kwant, the reference, thousands of times slower.
     energy_spacing : float, optional
         Average over a grid of energies within 10 kT of at most this spacing in meV, at most kT, as
-        the paper does, instead of exactly. What is farther away is left out, which changes sharp
-        conductances by up to 10⁻⁴ e²/h. Kwant always does so, by default at 0.5 µeV.
+        the paper does, instead of exactly. What is farther away, 10⁻⁴ of the thermal weight, is
+        left out. Kwant always does so, by default at 0.5 µeV.
     progress : callable, optional
         Called with the number of pairs (μ, B) that have just been done, and that of all pairs.
     theta : float
