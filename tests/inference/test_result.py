@@ -112,7 +112,7 @@ def test_a_device_is_found_with_its_offsets(device, inferred):
         assert abs(inferred[f"{name}_mean"] - value) < 4 * inferred[f"{name}_std"]
         assert inferred[name].dims == ("sample",)
         assert_allclose(inferred[name].std(), inferred[f"{name}_std"], rtol=0.4)
-    assert inferred["lever_arm"].attrs["units"] == "meV"
+    assert inferred["lever_arm"].attrs["units"] == "meV per unit"
     assert "mean and mu_offset" in inferred.attrs["not_told_apart"]
     shape = inferred["potential_mean"] - inferred["potential_mean"].mean()
     assert np.sqrt(((shape - wire.potential) ** 2).mean()) < 0.002
