@@ -11,6 +11,8 @@ import xarray as xr
 from command_line import landscape
 from disorder_landscape import Nanowire, Prior, conductance
 from disorder_landscape.chain import FIVE, shipped_model
+from disorder_landscape.model.quantities import CONDUCTANCES
+from disorder_landscape.potential_file import read_potential
 
 SMALL = ["--sites", "30", "--B", "0:0.8:5", "--bias", "-0.02,0,0.02"]
 
@@ -121,6 +123,33 @@ def test_bad_input_is_one_sentence(monkeypatch, capsys, tmp_path, options, says)
     assert err.count("\n") == 1
     assert out == ""
     assert sorted(tmp_path.iterdir()) == before
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["0.1\n0.2\n0.3\n", "\ufeff0.1\n0.2\n0.3\n", ",0\n0,0.1\n1,0.2\n2,0.3\n", "V\n.1\n.2\n\n.3"],
+)
+def test_a_potential_is_read_as_spreadsheets_write_it(tmp_path, text):
+    path = tmp_path / "V.csv"
+    path.write_text(text, "utf-8")
+    assert read_potential(path).tolist() == [0.1, 0.2, 0.3]
+
+
+def test_a_wire_of_another_material_is_an_option_away(monkeypatch, capsys, tmp_path):
+    (tmp_path / "V.csv").write_text("0.1\n0.2\n0.3\n0.4\n")
+    output = tmp_path / "wire.nc"
+    wire = ["--potential", tmp_path / "V.csv", "--mass", 0.026, "--lattice", 8, "--lead-mu", 20]
+    more = ["--dissipation", 0.01, "--parent-dissipation", 0, "--B", 0.5, "--bias", 0]
+    code, out, _ = landscape(monkeypatch, capsys, "simulate", *wire, *more, "-o", output)
+    assert code == 0
+    assert out.startswith("4 sites; wrote ")
+    made = xr.open_dataset(output, engine="h5netcdf")
+    given = Nanowire(
+        [0.1, 0.2, 0.3, 0.4], 8.0, 0.026, 8.0, lead_mu=20, dissipation=0.01, parent_dissipation=0.0
+    )
+    expected = conductance(given, 0.0, 0.5, 0.0)
+    for name in CONDUCTANCES:
+        np.testing.assert_allclose(made[name], expected[name], atol=1e-12)
 
 
 @pytest.mark.parametrize(

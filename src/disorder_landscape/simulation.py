@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from tokenize import TokenError
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from disorder_landscape.arguments import ArgumentError, numbers_of, require, whole_number_in
-from disorder_landscape.dataset.store import read_dataset
 from disorder_landscape.files import check_netcdf, check_writable, write_picture
 from disorder_landscape.model.disorder import disorder_realization
 from disorder_landscape.model.parameters import (
@@ -19,66 +17,15 @@ from disorder_landscape.model.parameters import (
     SITES,
     FloatArray,
     Nanowire,
-    checked_potential,
 )
 from disorder_landscape.model.quantities import AXES, CONDUCTANCES, with_units
 from disorder_landscape.observables.conductance import Progress, conductance
 from disorder_landscape.observables.visibility import topological_visibility
 from disorder_landscape.parts import needs
+from disorder_landscape.potential_file import read_potential
 
 COMPONENTS = 5
 """Of the disorder that a command draws, unless it says otherwise: the paper's smaller number."""
-NOT_NUMBERS = (ValueError, EOFError, SyntaxError, TokenError, TypeError, OverflowError)
-"""What NumPy raises for files that are damaged or something else."""
-
-
-def read_potential(path: Path) -> FloatArray:
-    """Read V_dis(x) in meV from a file.
-
-    Parameters
-    ----------
-    path : Path
-        .npy (a vector), .nc (the variable potential), or text with one site per line, the potential
-        in the last comma-separated column, with or without a header line.
-
-    Raises
-    ------
-    ArgumentError
-        If the file cannot be read as that, or holds NaN.
-    """
-    must = "be a .csv, .npy or .nc file of one potential value in meV per site"
-    if path.suffix == ".nc":
-        V = read_dataset(path, ["potential"])["potential"].to_numpy()
-    else:
-        try:
-            V = _read_npy(path) if path.suffix == ".npy" else _read_text(path)
-        except FileNotFoundError:
-            raise ArgumentError("potential", must, f"there is no '{path}'") from None
-        except (OSError, *NOT_NUMBERS) as error:
-            reason = str(error).splitlines()[0]
-            raise ArgumentError("potential", must, f"'{path}' is not: {reason}") from None
-    return checked_potential(V)
-
-
-def _read_npy(path: Path) -> FloatArray:
-    with open(path, "rb") as file:  # NumPy leaves it open where the header is damaged
-        return np.asarray(np.load(file, allow_pickle=False))
-
-
-def _read_text(path: Path) -> FloatArray:
-    lines = path.read_text("utf-8").splitlines()
-    last = {n: line.split(",")[-1].strip() for n, line in enumerate(lines, 1) if line.strip()}
-    values = []
-    for number, word in last.items():
-        try:
-            values.append(float(word))
-        except ValueError:
-            if number != min(last):  # the first line may be a header
-                message = f"line {number} ends with '{word}', which is no number"
-                raise ValueError(message) from None
-    if len(values) < 2:
-        raise ValueError("it holds fewer than two lines with a number, one for each site")
-    return np.array(values)
 
 
 def parse_grid(name: str, text: str) -> FloatArray:
@@ -150,9 +97,9 @@ def chosen_wire(
         return Nanowire(V, **parameters)
     sites = whole_number_in("sites", SITES if sites is None else sites, 2, MOST_SITES)
     components = COMPONENTS if components is None else components
-    components = whole_number_in("components", components, 0, sites - 1)
     if seed is None or components == 0:
         return Nanowire(np.zeros(sites), **parameters)
+    components = whole_number_in("components", components, 0, sites - 1)
     V = disorder_realization(np.random.default_rng(seed), components, sites)[1]
     return Nanowire(V, **parameters)
 

@@ -101,4 +101,4 @@ def simulate(
     write_dataset(result, output, made_here())
     if plot is not None:
         simulation.plot_simulation(result, plot)
-    print(f"wrote {output}" + (f" and {plot}" if plot else ""))
+    print(f"{wire.sites} sites; wrote {output}" + (f" and {plot}" if plot else ""))
