@@ -295,13 +295,24 @@ def test_unknowns_of_a_device_are_found_again():
         assert_allclose(slopes, numerical.T, rtol=1e-5, atol=1e-8)
 
 
-def test_a_normal_distribution_ends_where_the_range_does():
+@pytest.mark.parametrize(
+    ("name", "mean", "std", "low", "high"),
+    [
+        ("temperature", 0.05, 0.0125, 0.0, 0.1125),
+        ("temperature", 0.3, 0.1, 0.0, 0.8),
+        ("gamma", 0.651, 0.1539, 0.0, 1.4205),
+        ("critical_field", 1.0, 0.2, 0.001, 2.0),
+        ("bias_offset", 0.0, 0.03, -0.1, 0.1),
+        ("g", 25.0, 1.0, 20.0, 30.0),
+    ],
+)
+def test_a_normal_distribution_ends_where_the_range_does(name, mean, std, low, high):
     """… if that is three standard deviations away or more; otherwise five away."""
-    prior = Prior(3, SITES, temperature=Normal(0.05, 0.0125), g=Normal(25, 1))
-    temperature, g = prior.unknown["temperature"], prior.unknown["g"]
-    assert temperature.range == pytest.approx((0.0, 0.1))
-    assert g.range == (20, 30)
-    xi = np.array([-9.0, -4.5, 0.0, 1.0, 4.5])
-    np.testing.assert_allclose(temperature.value(xi), [0.0, 0.0, 0.05, 0.0625, 0.1], atol=1e-12)
-    np.testing.assert_allclose(temperature.standard([0.0, 0.0625]), [-4.0, 1.0])
-    assert Prior.from_mapping(prior.to_dict()) == prior
+    given = Normal(mean, std)
+    prior = Prior(3, SITES, **{name: given})
+    belief = prior.unknown[name]
+    assert belief == given
+    assert belief.range == pytest.approx((low, high))
+    np.testing.assert_allclose(belief.value([-9.0, 0.0, 1.0, 9.0]), [low, mean, mean + std, high])
+    np.testing.assert_allclose(belief.standard([mean, mean + std]), [0.0, 1.0], atol=1e-12)
+    assert Prior.from_mapping(prior.to_dict()).unknown[name].range == belief.range

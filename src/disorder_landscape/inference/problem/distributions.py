@@ -63,7 +63,7 @@ class Uniform:
 class Normal:
     """A normal distribution, cut where it is next to nothing: five standard deviations away.
 
-    A prior cuts it where the parameter's range ends, if that is three or more away.
+    A prior cuts it where the parameter's range ends, if that is three or more away from the mean.
 
     Raises
     ------
@@ -73,7 +73,9 @@ class Normal:
 
     mean: float
     std: float
-    reach: float = field(default=FARTHEST, init=False, repr=False)
+    limits: tuple[float, float] = field(
+        default=(-np.inf, np.inf), init=False, repr=False, compare=False
+    )
 
     def __post_init__(self) -> None:
         for name, value in _moments("", self.mean, self.std).items():
@@ -82,11 +84,12 @@ class Normal:
     @property
     def range(self) -> tuple[float, float]:
         """The least and the largest value."""
-        return self.mean - self.reach * self.std, self.mean + self.reach * self.std
+        low, high = self.value([-FARTHEST, FARTHEST]).tolist()
+        return low, high
 
     def value(self, xi: ArrayLike) -> FloatArray:
         """Return the values that standard normal numbers stand for."""
-        return np.asarray(self.mean + self.std * _within(xi, self.reach))
+        return np.clip(self.mean + self.std * _within(xi), *self.limits)
 
     def slope(self, xi: ArrayLike) -> FloatArray:
         """Return the derivatives of the values."""
@@ -94,14 +97,13 @@ class Normal:
 
     def standard(self, value: ArrayLike) -> FloatArray:
         """Return the standard normal numbers of values; of those outside, the farthest."""
-        return _within((np.asarray(value) - self.mean) / self.std, self.reach)
+        return _within((np.asarray(value) - self.mean) / self.std)
 
     def cut_to(self, low: float, high: float) -> Normal:
         """Return it cut where a range ends, if that is far enough from the mean."""
-        farthest = min(self.mean - low, high - self.mean) / self.std if self.std > 0 else 0.0
         found = Normal(self.mean, self.std)
-        if farthest >= LEAST:
-            object.__setattr__(found, "reach", min(FARTHEST, farthest))
+        if min(self.mean - low, high - self.mean) >= LEAST * self.std * (1 - 1e-9):
+            object.__setattr__(found, "limits", (low, high))
         return found
 
 
@@ -110,8 +112,8 @@ Belief = float | Distribution
 """Of one parameter: its value, if it is known."""
 
 
-def _within(xi: ArrayLike, reach: float = FARTHEST) -> FloatArray:
-    return np.clip(xi, -reach, reach)
+def _within(xi: ArrayLike) -> FloatArray:
+    return np.clip(xi, -FARTHEST, FARTHEST)
 
 
 def _moments(of: str, mean: object, std: object) -> dict[str, float]:
