@@ -188,9 +188,9 @@ def _search(
         one = next(rounds, None)
         if one is None:
             optima.start_at(found.mean, number)
-            # not settled, perhaps since V has never been known to TRIED_FROM
-            rng = np.random.default_rng([seed, number, count, 3])
-            starts.start_about(start, number, rng, at_last=not optima.fits)
+            # Perhaps V has never been known to TRIED_FROM, or the rounds have gone astray.
+            rng, fits = np.random.default_rng([seed, number, count, 3]), optima.fits
+            starts.start_about(start, number, rng, tried=0 if fits else 1, best_of_many=not fits)
             return count
         progress(Step(number, ROUND, count, one.misfit, one.spread))
         found, count, spread = one.distribution, count + 1, one.spread

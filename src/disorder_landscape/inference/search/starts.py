@@ -1,6 +1,7 @@
 """From a start to an optimum of few unknowns, by steps with some of the data first.
 
-Where the noise may hide optima, a start is the best of many draws.
+Where the noise may hide optima, and where an attempt has found none that fits, a start is the best
+of many draws.
 """
 
 from __future__ import annotations
@@ -24,7 +25,8 @@ SHARE = 0.25
 FEWEST = 7
 """Lines of μ and of B that these have at least."""
 STARTS = 2, 4
-"""So many starts about a distribution, if none has led to an optimum that fits, or if one has."""
+"""So many starts about a distribution, if none has led to an optimum that fits, or if one has, or
+where an attempt ends without one."""
 MOST_STARTS = 128
 """There are no more than this, even if samples of the posterior ask for more."""
 NEARBY = 0.2
@@ -67,18 +69,17 @@ class Starts:
         attempt: int,
         rng: np.random.Generator,
         tried: int = 0,
-        at_last: bool = False,
+        best_of_many: bool = False,
     ) -> None:
         """Let steps start at the mean of a distribution, if none has been tried, and at draws.
 
-        At last, where the rounds have led to nothing that fits, each start is the best of many.
+        There are more starts, each the best of many draws, where fewer have led nowhere before.
         """
         self._about = found, attempt
         optima, (few, more) = self.optima, STARTS
-        tried = max(tried, at_last)
         while not optima.is_done:
             fits, is_wide = optima.fits, optima.is_wide
-            if tried >= (more if fits or at_last else few) and not is_wide:
+            if tried >= (more if fits or best_of_many else few) and not is_wide:
                 return
             (own,) = rng.spawn(1)
             if tried == 0:
@@ -86,7 +87,7 @@ class Starts:
             elif fits and is_surely_right(optima.observation):
                 near = Gaussian(best(optima.found).answer.mean, NEARBY**2 * found.covariance)
                 x = near.draw(own, 2)[0]
-            elif is_wide or (not fits and at_last):
+            elif is_wide or (best_of_many and not fits):
                 x = self._best_of_draws(found, own)
             else:
                 x = found.draw(own, 2)[0]
