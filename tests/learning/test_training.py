@@ -82,9 +82,9 @@ def test_an_interrupted_training_ends_like_an_uninterrupted_one(tmp_path, monkey
     assert [path.name for path in (tmp_path / "resumed").glob("checkpoint-*")] == [
         "checkpoint-0001"
     ]
-    with pytest.raises(ArgumentError, match=r"no finished training in '.*resumed'\.$"):
+    with pytest.raises(ArgumentError, match="not finished"):
         load_model(tmp_path / "resumed")
-    with pytest.raises(ArgumentError, match=r"but there is one in '.*whole'\.$"):
+    with pytest.raises(ArgumentError, match=r"no model in '.*', but one in '.*resumed'\.$"):
         load_model(tmp_path)
     (tmp_path / "resumed" / ".writing-checkpoint-0002").mkdir()  # as a kill −9 leaves it
 

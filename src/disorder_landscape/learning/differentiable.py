@@ -112,7 +112,8 @@ def differentiable_conductance(
         """Require the right shapes and, where there are values, wires that there can be."""
         for name, tensor in zip(names, tensors, strict=True):
             shape = [tensors[0].shape[0], wire.sites][: 2 if name == "V" else 1]
-            must = f"have the shape (batch, {f'{wire.sites} sites' if name == 'V' else ''})"
+            of_sites = f"(batch, site), with {wire.sites} sites"
+            must = f"have the shape {of_sites if name == 'V' else '(batch,)'}"
             fits = tensor.shape.is_compatible_with(shape) and shape[0] != 0
             require(fits, name, must, f"it is {tuple(tensor.shape)}")
         if tf.executing_eagerly():

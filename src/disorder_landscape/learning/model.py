@@ -145,7 +145,14 @@ def existing_folder(folder: str | Path) -> Path:
     """
     is_folder = isinstance(folder, str | Path) and os.path.isdir(folder)
     require(is_folder, "model", _MODEL, f"there is no folder {shown(str(folder))}")
-    return Path(folder)
+    folder = Path(folder)
+    inside = sorted(folder.glob(f"*/{CONFIG}"))
+    if inside and not (folder / CONFIG).exists():
+        but = (
+            f"there is no model in {shown(str(folder))}, but one in {shown(str(inside[0].parent))}"
+        )
+        raise ArgumentError("model", _MODEL, but)
+    return folder
 
 
 def load_model(folder: str | Path) -> TrainedModel:
@@ -157,12 +164,8 @@ def load_model(folder: str | Path) -> TrainedModel:
         If the folder is not one of a finished training, or a file in it is damaged.
     """
     folder = existing_folder(folder)
-    if not (folder / METRICS).exists():
-        inside = next(folder.glob(f"*/{METRICS}"), None)
-        but = f"there is no finished training in '{folder}'"
-        if inside is not None:
-            but += f", but there is one in '{inside.parent}'"
-        raise ArgumentError("model", _MODEL, but)
+    finished = (folder / METRICS).exists()
+    require(finished, "model", _MODEL, f"the training in '{folder}' is not finished")
     config = load_model_config(folder)
     scaler = read_model_file(folder / SCALER)
     try:
