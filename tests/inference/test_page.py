@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 import disorder_landscape as dl
 from disorder_landscape.inference.page import page
-from disorder_landscape.inference.plot import plot_inference
+from disorder_landscape.inference.plot import _potential, plot_inference
 from disorder_landscape.inference.plot_maps import (
     draw_conductances,
     draw_maps,
@@ -50,6 +50,23 @@ def test_a_result_is_drawn_in_each_format(result, measured, tmp_path, ending):
     begins = {".html": b"<!doctype html>", ".png": b"\x89PNG", ".pdf": b"%PDF"}
     assert path.read_bytes().startswith(begins[ending])
     assert [one.name for one in tmp_path.iterdir()] == [path.name]
+
+
+def test_several_maxima_are_drawn(result):
+    """The first few with their shares, all with their potentials."""
+    one = result["potential_maxima"][0].to_numpy()
+    several = result.drop_dims("maximum").assign(
+        share=("maximum", [0.4, 0.3, 0.1, 0.1, 0.05]),
+        potential_maxima=(("maximum", "site"), np.stack([k * one for k in range(5)])),
+    )
+    panel = Figure().subplots()
+    _potential(panel, several)
+    assert len(panel.lines) == 1 + 5
+    labels = [text.get_text() for text in panel.get_legend().get_texts()]
+    assert labels == ["40 %", "30 %", "10 %", "10 %"]
+    assert "5 wires explain the data within their noise, with 40, 30, 10" in verdict_sentence(
+        several
+    )
 
 
 def test_one_conductance_alone_is_drawn(result, measured, tmp_path):

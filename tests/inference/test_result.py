@@ -76,6 +76,23 @@ def test_maxima_that_hold_most_of_the_posterior_are_said(linear, share, listed, 
         assert shares_as_text(found) == words
 
 
+def test_the_most_probable_wire_comes_first(linear):
+    """… even if it is so sharp that more of the posterior is about another one."""
+    wide = posterior(linear)
+    sharp = type(wide)(wide.mean + 1.0, wide.covariance / 9)
+    optima = [Optimum(wide, linear.data, 1.0, 0.0), Optimum(sharp, linear.data, 0.0, 0.0)]
+    found = maxima_of(linear, Outcome(optima))
+    assert found.sizes["maximum"] == 2
+    assert found["share"][0] < found["share"][1]
+    assert_allclose(found["potential_maxima"][0], linear.unknowns.potential(sharp.mean))
+
+
+def test_where_no_wire_explains_the_data_the_best_one_stands_alone(linear):
+    answer = posterior(linear)
+    optima = [Optimum(answer, linear.data, height, 50.0) for height in (0.0, 0.0, 1.0)]
+    assert maxima_of(linear, Outcome(optima))["share"].to_numpy().tolist() == [1.0]
+
+
 @pytest.fixture(scope="module")
 def device():
     """A wire, and its conductances as a device shows them, whose gate and bias are off."""

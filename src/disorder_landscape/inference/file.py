@@ -23,6 +23,8 @@ from disorder_landscape.inference.stages import Progress, silent
 from disorder_landscape.learning.model import CONFIG, NETWORK, SCALER
 from disorder_landscape.locks import kept_from_others
 
+PICTURES = (".html", ".pdf", ".png", ".svg")
+"""Endings that name a picture, not a folder of pictures."""
 ASKED = "asked"
 """Attribute of a result: the measurement, the model and the options that it answers."""
 
@@ -97,8 +99,8 @@ def tasks_of_folder(
     """
     names = [path.stem for path in measurements]
     twice = sorted({name for name in names if names.count(name) > 1})
-    is_folder = plots is None or not plots.suffix or plots.is_dir()
-    require(is_folder, "plot", "name a folder, as output does", f"it is '{plots}'")
+    is_file = plots is not None and (plots.is_file() or plots.suffix in PICTURES)
+    require(not is_file, "plot", "name a folder, as output does", f"it is '{plots}'")
     must = "have names of their own, since their results have the same"
     require(not twice, "measurement", must, f"there are several of {', '.join(twice)}")
     given = _given(settings)
@@ -111,6 +113,8 @@ def tasks_of_folder(
         must = "be another folder than that of the measurements"
         require(not same, "output", must, f"both have '{path.name}'")
         check_writable("output", task.unfinished)
+        if plot is not None:
+            check_writable("plot", plot)
         if task.output.exists():
             stored = _asked_of(task.output)
             must = "be a folder for results of these measurements with these options"

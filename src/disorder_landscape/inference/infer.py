@@ -109,7 +109,8 @@ def infer(
         most probable wire: conductances G_LL … G_RL (mu, B, bias) and misfit (channel) in e²/h, NaN
         where nothing was measured, and T_IV (lead, map_mu, map_B) on a finer grid. Of the wires at
         the maxima of the posterior: potential_maxima (maximum, site) in meV, each unknown parameter
-        with _maxima, and the share (maximum) of the posterior; as many as have 95 % of it together.
+        with _maxima, and the share (maximum) of the posterior; the most probable one first, and as
+        many as have 95 % of it together.
         With discrepancy, the standard deviation of that error, discrepancy (channel) in e²/h, whose
         attribute settled is 0 where more turns or samples may change it; log_evidence then is that
         with these errors.

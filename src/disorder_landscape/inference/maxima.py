@@ -15,7 +15,9 @@ MOST_OF_IT = 0.95
 
 
 def maxima_of(observation: Observation, outcome: Outcome) -> xr.Dataset:
-    """Return the wires at the maxima that hold most of the posterior, the largest share first.
+    """Return the most probable wire, and those at the other maxima that hold most of the posterior.
+
+    The others follow by their share. Where no wire explains the data there is the best one alone.
 
     Returns
     -------
@@ -23,10 +25,12 @@ def maxima_of(observation: Observation, outcome: Outcome) -> xr.Dataset:
         share (maximum) of the posterior; potential_maxima (maximum, site) in meV, and each unknown
         parameter (maximum) under its own name with _maxima.
     """
-    share = posterior_shares(observation, outcome.optima, outcome.importance_samples)
-    order = np.argsort(-share, kind="stable")
+    optima = list(outcome.optima) if outcome.best.fits else [outcome.best]
+    share = posterior_shares(observation, optima, outcome.importance_samples)
+    by_share = np.argsort(-share, kind="stable").tolist()
+    order = sorted(by_share, key=lambda k: optima[k] is not outcome.best)
     order = order[: 1 + np.searchsorted(np.cumsum(share[order]), MOST_OF_IT)]
-    X = np.stack([outcome.optima[k].answer.mean for k in order])
+    X = np.stack([optima[k].answer.mean for k in order])
     unknowns = observation.unknowns
     V = unknowns.potential(X)
     words = {"long_name": "potential at the maxima of the posterior", "units": "meV"}

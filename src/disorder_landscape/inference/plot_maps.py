@@ -113,8 +113,9 @@ def draw_maps(
     P, exceed = result["P_topological"].to_numpy(), f"gap that {100 * SURE:.0f} % exceed"
     T_IV = result["T_IV"][0].to_numpy()
     closed = r" ($\Gamma = 0$)" if has_dissipation(result) else ""
+    wire = "most probable wire" if "share" in result else "mean"  # in results of older versions
     shown = {
-        "T": Shown(fine, T_IV, rf"$T_\mathrm{{IV}}$ of the most probable wire{closed}", "", in_T),
+        "T": Shown(fine, T_IV, rf"$T_\mathrm{{IV}}$ of the {wire}{closed}", "", in_T),
         "P": Shown(fine, P, "$P$(topological); dots: data", "", in_P),
         "gap": Shown(data, gap, exceed + closed, "µeV", in_gap),
     }
