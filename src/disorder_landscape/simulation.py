@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from disorder_landscape.arguments import ArgumentError, numbers_of, require, whole_number_in
+from disorder_landscape.conductance_picture import colour_scale, symbol
 from disorder_landscape.files import check_netcdf, check_writable, write_picture
 from disorder_landscape.model.disorder import disorder_realization
 from disorder_landscape.model.parameters import (
@@ -180,7 +181,6 @@ def plot_simulation(result: xr.Dataset, path: Path) -> None:
     ArgumentError
         If the file cannot be written.
     """
-    import matplotlib as mpl
     from matplotlib.figure import Figure
 
     axes = sorted(AXES, key=lambda name: result.sizes[name])
@@ -195,13 +195,10 @@ def plot_simulation(result: xr.Dataset, path: Path) -> None:
     for panel, name in zip(figure.subplots(1, 4), CONDUCTANCES, strict=True):
         G, unit = shown[name], "$e^2/h$"
         if y:
-            local, largest = name in ("G_LL", "G_RR"), float(abs(G).max()) or 1.0
-            norm = mpl.colors.Normalize(0 if local else -largest, largest)
-            cmap = "viridis" if local else "RdBu_r"
-            bar = {"label": unit}
-            G.plot.pcolormesh(x=x, y=y[0], ax=panel, norm=norm, cmap=cmap, cbar_kwargs=bar)
+            colours = colour_scale(name, float(abs(G).max()) or 1.0)
+            G.plot.pcolormesh(x=x, y=y[0], ax=panel, cbar_kwargs={"label": unit}, **colours)
         else:
             G.plot.line("k.-", x=x, ax=panel)
             panel.set_ylabel(unit)
-        panel.set_title(rf"$G_\mathrm{{{name[2:]}}}$")
+        panel.set_title(symbol(name))
     write_picture(path, figure, dpi=150)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from disorder_landscape.conductance_picture import symbol
 from disorder_landscape.files import write_picture
 from disorder_landscape.inference.inferred import prior_of_result
 from disorder_landscape.inference.page import DPI, write_page
@@ -186,7 +187,7 @@ def _misfit(panel: Any, result: xr.Dataset) -> None:
     if "discrepancy" in result:
         errors = np.hypot(noise, result["discrepancy"])
         panel.plot(position, errors, "_", color="C3", ms=18, label="and discrepancy")
-    names = [rf"$G_\mathrm{{{name[2:]}}}$" for name in CONDUCTANCES]
+    names = [symbol(name) for name in CONDUCTANCES]
     panel.set_xticks(position, names)
     largest = max(np.nanmax(line.get_ydata()) for line in panel.lines)
     largest = max(float(result["misfit"].max()), largest)

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from disorder_landscape.conductance_picture import colour_scale, symbol
 from disorder_landscape.inference.problem.measurement import Measurement
 from disorder_landscape.inference.problem.observation import errors_variance
 from disorder_landscape.inference.report import SURE, has_dissipation
@@ -36,7 +37,7 @@ class Shown(NamedTuple):
 
 def measured_channels(measurement: Measurement) -> list[int]:
     """Return which of the channels were measured."""
-    return np.flatnonzero(np.isfinite(measurement.G).any(axis=(0, 1, 2))).tolist()
+    return np.flatnonzero(measurement.has_channel).tolist()
 
 
 def draw_conductances(
@@ -66,19 +67,17 @@ def _compared(result: xr.Dataset, measurement: Measurement, channel: int) -> dic
     )
     G = np.ma.masked_invalid(G)
     largest = max(abs(G).max(), abs(answer).max())
-    local = name in ("G_LL", "G_RR")
-    norm = {"vmin": 0 if local else -largest, "vmax": largest}
-    norm["cmap"] = "viridis" if local else "RdBu_r"
+    colours = colour_scale(name, largest)
     beside = float(result["discrepancy"][channel]) if "discrepancy" in result else 0.0
     std = np.sqrt(errors_variance(result.attrs["noise"][channel]) + beside**2)
-    symbol, unit = SYMBOLS.get(other, (other, ""))
-    value = f"{symbol} = {axes[other][at]:g} {unit}".strip()
-    G_name, all_errors = rf"$G_\mathrm{{{name[2:]}}}$", r"$\sigma$ of all errors"
+    cut, unit = SYMBOLS.get(other, (other, ""))
+    value = f"{cut} = {axes[other][at]:g} {unit}".strip()
+    G_name, all_errors = symbol(name), r"$\sigma$ of all errors"
     gaps = " (grey: not)" if G.mask.any() else ""
     off = f"{G_name}, measured − explained"
     return {
-        "measured": Shown(grid, G, f"{G_name} at {value}, measured{gaps}", "$e^2/h$", norm),
-        "explained": Shown(grid, answer, f"{G_name}, explained", "$e^2/h$", norm),
+        "measured": Shown(grid, G, f"{G_name} at {value}, measured{gaps}", "$e^2/h$", colours),
+        "explained": Shown(grid, answer, f"{G_name}, explained", "$e^2/h$", colours),
         "residual": Shown(grid, (G - answer) / std, off, all_errors, RESIDUAL),
     }
 

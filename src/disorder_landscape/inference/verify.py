@@ -111,7 +111,7 @@ def verify(
     wires, measured, samples = compared(prediction, given, controls, seed, config)
     stated = [stated_noise(dataset.attrs, 0.0) if noise is None else noise for dataset in given]
     noises = [noise_of_channels(one, of) for one, of in zip(stated, given, strict=True)]
-    there = np.array([np.isfinite(m.G).any(axis=(0, 1, 2)) for m in measured])
+    there = np.array([m.has_channel for m in measured])
     errors = np.where(there, noises, np.nan)
     of_samples = len(samples or ()) * sum(m.mu.size * m.B.size for m in measured)
     in_all = simulations(len(wires), measured, tried) + of_samples

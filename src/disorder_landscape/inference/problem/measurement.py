@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 from scipy.constants import e, h
 
 from disorder_landscape.arguments import grid_in, number_in, require
@@ -72,6 +73,11 @@ class Measurement:
     """What it says of the device: parameters by name, barriers each by its own."""
     left_out: FloatArray = field(default_factory=lambda: np.empty(0))
     """Biases at which nothing was measured."""
+
+    @property
+    def has_channel(self) -> NDArray[np.bool_]:
+        """Which channels hold a number, shape (channel,)."""
+        return np.asarray(np.isfinite(self.G).any(axis=(0, 1, 2)))
 
     @property
     def settings(self) -> dict[str, float]:
