@@ -68,45 +68,27 @@ def compared(
     is_old = is_dataset and "member" in prediction.dims
     must = "have the dim sample, if it is the result of an inversion"
     require(not is_old, "prediction", must, "an older version made it: run infer again")
-    if is_dataset and "potential_mean" in prediction.variables:
-        return _of_inversion(prediction, given, controls, seed, config)
-    measured = [measurement_of(dataset) for dataset in given]
-    for measurement in measured:
-        check_wire(measurement)
-    predicted = _guessed_wire(prediction)
-    return Compared(_with_controls(prediction, predicted, controls, seed, config), measured, None)
-
-
-def _of_inversion(
-    prediction: xr.Dataset,
-    given: Sequence[xr.Dataset],
-    controls: int,
-    seed: int,
-    config: DatasetConfig | None,
-) -> Compared:
-    usual = usual_settings_of(prediction)
-    stated = [measurement_of(one, usual) for one in given]
-    measured = [as_calibrated(prediction, one) for one in stated]
-    predicted, prior = mean_wire(prediction), prior_of_result(prediction)
-    if config is None:
-        wires = [predicted, *wires_like(predicted, prior, controls, seed)]
+    is_inversion = is_dataset and "potential_mean" in prediction.variables
+    samples: Sequence[Sample] | None = None
+    if is_inversion:
+        usual = usual_settings_of(prediction)
+        stated = [measurement_of(one, usual) for one in given]
+        measured = [as_calibrated(prediction, one) for one in stated]
+        predicted = mean_wire(prediction)
+        enough = prediction.sizes.get("sample", 0) >= LEAST_SAMPLES
+        samples = samples_of(prediction, stated) if enough else []
     else:
-        wires = _with_controls(prediction, predicted, controls, seed, config)
-    enough = prediction.sizes.get("sample", 0) >= LEAST_SAMPLES
-    return Compared(wires, measured, samples_of(prediction, stated) if enough else [])
-
-
-def _with_controls(
-    prediction: xr.Dataset,
-    predicted: Nanowire,
-    controls: int,
-    seed: int,
-    config: DatasetConfig | None,
-) -> list[Nanowire]:
-    """Return a wire and those of its disorder model, all with the leads of that model."""
+        measured = [measurement_of(dataset) for dataset in given]
+        for measurement in measured:
+            check_wire(measurement)
+        predicted = _guessed_wire(prediction)
+    if is_inversion and config is None:
+        wrong = wires_like(predicted, prior_of_result(prediction), controls, seed)
+        return Compared([predicted, *wrong], measured, samples)
     model = disorder_model(prediction, predicted, config)
     wires = [predicted, *control_wires(model, controls, seed)]
-    return [replace(wire, lead_mu=model.wire.lead_mu) for wire in wires]
+    of_model = [replace(wire, lead_mu=model.wire.lead_mu) for wire in wires]
+    return Compared(of_model, measured, samples)
 
 
 def _guessed_wire(prediction: xr.Dataset) -> Nanowire:
