@@ -152,7 +152,7 @@ def _infer_file(settings: Settings, task: Task, progress: Progress = silent) -> 
         checkpoint=task.unfinished,
         progress=progress,
     )
-    _draw(result, task)  # before the result is written, which tells that all is done
+    _draw(result, measured, task.plot)  # before the result is written, which tells of the end
     asked = _asked(task.measurement, settings, _given(settings))
     attrs = {**settings.made, ASKED: asked}
     of_channels = ["misfit", "discrepancy"]  # some may be without data
@@ -161,11 +161,10 @@ def _infer_file(settings: Settings, task: Task, progress: Progress = silent) -> 
     return result
 
 
-def _draw(result: xr.Dataset, task: Task) -> None:
+def _draw(result: xr.Dataset, measured: xr.Dataset, plot: Path | None) -> None:
     """Draw a result, where a picture is asked for."""
-    if task.plot is not None:
-        measured = measurement_of(read_dataset(task.measurement), PAPERS_SETTINGS)
-        plot_inference(result, measured, task.plot)
+    if plot is not None:
+        plot_inference(result, measurement_of(measured, PAPERS_SETTINGS), plot)
 
 
 def prior_of(settings: Settings) -> Prior | Path:
@@ -208,10 +207,12 @@ def infer_one_of_many(settings: Settings, task: Task) -> Outcome:
     """Do as `infer_file`, or draw the result that is there; an error does not hinder the others."""
     try:
         with _alone_with(task):
-            is_there = task.output.exists()
-            result = read_dataset(task.output) if is_there else _infer_file(settings, task)
-            if not task.is_done:
-                _draw(result, task)
+            if not task.output.exists():
+                result = _infer_file(settings, task)
+            else:
+                result = read_dataset(task.output)
+                if not task.is_done:
+                    _draw(result, read_dataset(task.measurement), task.plot)
         return Outcome(task, verdict=str(result.attrs["verdict"]))
     except ArgumentError as error:
         return Outcome(task, error=str(error))
