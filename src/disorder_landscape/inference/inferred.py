@@ -13,7 +13,7 @@ import xarray as xr
 from disorder_landscape.arguments import ArgumentError, number_in, reals, require
 from disorder_landscape.inference.problem.measurement import PAPERS_SETTINGS, Measurement
 from disorder_landscape.inference.problem.parameters import PARAMETERS, Setup, nanowire
-from disorder_landscape.inference.problem.prior import FIXED, Prior, check_agreement
+from disorder_landscape.inference.problem.prior import Prior, check_agreement
 from disorder_landscape.model.parameters import FloatArray, Nanowire
 
 MUST = "be a result of infer"
@@ -166,7 +166,7 @@ def _enter(prior: Prior, setup: Setup, unknown: Mapping[str, float]) -> None:
 def _wire(prior: Prior, V: FloatArray, unknown: Mapping[str, float]) -> Nanowire:
     setup = Setup(np.zeros(1), np.zeros(1))
     _enter(prior, setup, unknown)
-    return nanowire(V, setup, {name: getattr(prior, name) for name in FIXED})
+    return nanowire(V, setup, prior.fixed)
 
 
 def _array(result: xr.Dataset, name: str, dims: tuple[str, ...]) -> FloatArray:

@@ -20,7 +20,6 @@ from disorder_landscape.inference.posterior.importance_sampling import weighted_
 from disorder_landscape.inference.problem.distributions import Distribution, Uniform
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.problem.parameters import BY_NAME
-from disorder_landscape.inference.problem.prior import FIXED
 from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.model.quantities import AXES, CONDUCTANCES, with_units
@@ -93,7 +92,7 @@ def result_of(observation: Observation, outcome: Outcome, samples: int, seed: in
     limits = at_limit(dataset, unknowns.parameters)
     dataset.attrs = {
         **unknowns.given.known,
-        **{name: getattr(unknowns.given, name) for name in FIXED},
+        **unknowns.given.fixed,
         **evidence(observation, outcome, X),
         **left_open(unknowns, covariance, list(limits)),
         "at_limit": ", ".join(f"{name} ({limit})" for name, limit in limits.items()),

@@ -157,6 +157,11 @@ class Prior:
         given = {one.name: getattr(self, one.name) for one in PARAMETERS}
         return {name: x for name, x in given.items() if isinstance(x, float)}
 
+    @property
+    def fixed(self) -> dict[str, float]:
+        """The parameters that are always known."""
+        return {name: getattr(self, name) for name in FIXED}
+
     def for_measurement(self, measurement: Measurement) -> Self:
         """Return the prior with all parameters said, the rest by the measurement or the paper.
 

@@ -26,7 +26,7 @@ from disorder_landscape.inference.problem.distributions import Distribution
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.measurement import Measurement, empty_measurement
 from disorder_landscape.inference.problem.parameters import PARAMETERS, Setup, nanowire
-from disorder_landscape.inference.problem.prior import FIXED, Prior
+from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.model.disorder import component_covariance, potential_from_components
 from disorder_landscape.model.parameters import FloatArray, Nanowire
 
@@ -150,7 +150,7 @@ class Unknowns:
 
     def devices(self, X: FloatArray, measurement: Measurement) -> list[Device]:
         """Return the devices of samples X (sample, unknown), as they are measured."""
-        fixed = {name: getattr(self.given, name) for name in FIXED}
+        fixed = self.given.fixed
         values = [(one, self.parameter(one.name, X)) for one in PARAMETERS]
         found = []
         for k, V in enumerate(self.potential(X)):
