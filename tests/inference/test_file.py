@@ -10,13 +10,9 @@ from command_line import landscape
 from disorder_landscape import ArgumentError
 from disorder_landscape.executors.local import LocalProcesses
 from disorder_landscape.inference import file
-from disorder_landscape.inference.file import (
-    Settings,
-    Task,
-    infer_file,
-    infer_one_of_many,
-    tasks_of_folder,
-)
+from disorder_landscape.inference.file import Task, infer_file
+from disorder_landscape.inference.folder import infer_one_of_many, tasks_of_folder
+from disorder_landscape.inference.settings import Settings
 from measurements import CONFIG, write_measurements
 
 

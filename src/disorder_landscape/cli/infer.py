@@ -26,7 +26,8 @@ from disorder_landscape.executors.executor import Executor, parse_share
 from disorder_landscape.parts import needs
 
 if TYPE_CHECKING:
-    from disorder_landscape.inference.file import Settings, Task
+    from disorder_landscape.inference.file import Task
+    from disorder_landscape.inference.settings import Settings
 
 
 @needs("inference")
@@ -97,8 +98,10 @@ def infer(
 
     Example: landscape infer device.nc --prior configs/priors/device.toml --noise 0.005 -o found.nc
     """
-    from disorder_landscape.inference.file import Settings, Task, tasks_of_folder
+    from disorder_landscape.inference.file import Task
+    from disorder_landscape.inference.folder import tasks_of_folder
     from disorder_landscape.inference.noise_hints import parse_noise
+    from disorder_landscape.inference.settings import Settings
 
     errors = None if noise is None else parse_noise(noise)
     settings = Settings(prior, model, errors, from_prior, samples, seed, discrepancy, made_here())
@@ -124,7 +127,7 @@ def _infer_alone(settings: Settings, task: Task) -> None:
     """Find what explains one measurement, on all cores, and print what was found."""
     from disorder_landscape.dataset.store import read_dataset
     from disorder_landscape.files import check_netcdf, check_writable
-    from disorder_landscape.inference.file import infer_file, prior_of
+    from disorder_landscape.inference.file import infer_file
     from disorder_landscape.inference.given import observation_of
     from disorder_landscape.inference.noise_hints import noise_hint
     from disorder_landscape.inference.plot import PAGE
@@ -145,7 +148,7 @@ def _infer_alone(settings: Settings, task: Task) -> None:
         check_writable("plot", plot)
     measured = read_dataset(task.measurement)
     errors = stated_noise(measured.attrs) if settings.noise is None else settings.noise
-    observation = observation_of(measured, prior_of(settings), errors)
+    observation = observation_of(measured, settings.prior_and_network()[0], errors)
     if settings.noise is None and "noise" not in measured.attrs:
         print(f"No noise is stated: {NOISE_FLOOR:g} e²/h is taken (--noise says another).")
     if settings.model is not None and not settings.from_prior:
@@ -170,7 +173,7 @@ def _infer_each(settings: Settings, tasks: Sequence[Task], executor: Executor) -
     from tqdm import tqdm
 
     from disorder_landscape.estimates import Pace
-    from disorder_landscape.inference.file import infer_one_of_many
+    from disorder_landscape.inference.folder import infer_one_of_many
 
     missing = [task for task in tasks if not task.is_done]
     verdicts: Counter[str] = Counter()

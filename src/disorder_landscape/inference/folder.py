@@ -1,0 +1,79 @@
+"""From the files of many measurements to one result each, in a folder."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from disorder_landscape.arguments import ArgumentError, require
+from disorder_landscape.dataset.store import read_dataset
+from disorder_landscape.files import check_writable
+from disorder_landscape.inference.file import Task, alone_with, draw, infer_alone
+from disorder_landscape.inference.settings import Settings, asked_for, asked_of
+
+PICTURES = (".html", ".pdf", ".png", ".svg")
+"""Endings that name a picture, not a folder of pictures."""
+
+
+def tasks_of_folder(
+    measurements: Sequence[Path], output: Path, plots: Path | None, settings: Settings
+) -> list[Task]:
+    """Return one task for each measurement, with results of the same names in a folder.
+
+    Raises
+    ------
+    ArgumentError
+        If two measurements have one name, a result would replace its measurement, the folder holds
+        the result of another measurement, model or option under one of these names, or pictures
+        are to go into a file.
+    """
+    names = [path.stem for path in measurements]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    is_file = plots is not None and (plots.is_file() or plots.suffix in PICTURES)
+    require(not is_file, "plot", "name a folder, as output does", f"it is '{plots}'")
+    must = "have names of their own, since their results have the same"
+    require(not twice, "measurement", must, f"there are several of {', '.join(twice)}")
+    hashes = settings.hashes()
+    tasks = []
+    for path in measurements:
+        require(path.is_file(), "measurement", "be a netCDF file", f"there is no '{path}'")
+        plot = None if plots is None else plots / f"{path.stem}.png"
+        task = Task(path, output / f"{path.stem}.nc", plot)
+        same = task.output.resolve() == path.resolve()
+        must = "be another folder than that of the measurements"
+        require(not same, "output", must, f"both have '{path.name}'")
+        check_writable("output", task.unfinished)
+        if plot is not None:
+            check_writable("plot", plot)
+        if task.output.exists():
+            stored = asked_of(task.output)
+            must = "be a folder for results of these measurements with these options"
+            but = f"'{task.output}' is another one's (delete it, or give another folder)"
+            require(stored == asked_for(path, settings, hashes), "output", must, but)
+        tasks.append(task)
+    return tasks
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of one of many measurements: a verdict, or the error that hindered it."""
+
+    task: Task
+    verdict: str = ""
+    error: str = ""
+
+
+def infer_one_of_many(settings: Settings, task: Task) -> Outcome:
+    """Do as `infer_file`, or draw the result that is there; an error does not hinder the others."""
+    try:
+        with alone_with(task):
+            if not task.output.exists():
+                result = infer_alone(settings, task)
+            else:
+                result = read_dataset(task.output)
+                if not task.is_done:
+                    draw(result, read_dataset(task.measurement), task.plot)
+        return Outcome(task, verdict=str(result.attrs["verdict"]))
+    except ArgumentError as error:
+        return Outcome(task, error=str(error))
