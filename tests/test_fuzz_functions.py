@@ -17,10 +17,10 @@ import disorder_landscape.inference.infer
 from disorder_landscape import Nanowire, conductance, conductance_gradient, topological_visibility
 from disorder_landscape.config import Config, DatasetConfig
 from disorder_landscape.dataset.realizations import realization
-from disorder_landscape.inference.invert import InversionSettings
 from disorder_landscape.inference.optimum import optimum_at
 from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.problem.parameters import PARAMETERS
+from disorder_landscape.inference.search.few_unknowns import InversionSettings
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.learning.scaling import LabelScaler
 from disorder_landscape.model.parameters import BARRIER_RANGE, PARAMETER_RANGES

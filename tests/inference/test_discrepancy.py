@@ -9,8 +9,8 @@ from disorder_landscape import conductance
 from disorder_landscape.config import Config, DatasetConfig
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.inference import discrepancy
-from disorder_landscape.inference.invert import InversionSettings
 from disorder_landscape.inference.report import sentences_on, summary
+from disorder_landscape.inference.search.few_unknowns import InversionSettings
 from disorder_landscape.inference.search.regression_rounds import RoundSettings
 from disorder_landscape.inference.verdict import CONVERGED, NOT_DESCRIBED
 from disorder_landscape.learning.model import TrainedModel

@@ -16,7 +16,6 @@ from disorder_landscape.config import Config, DatasetConfig, TrainingConfig
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.files import read_json
 from disorder_landscape.inference.given import observation_of
-from disorder_landscape.inference.invert import InversionSettings
 from disorder_landscape.inference.noise_hints import noise_hint, parse_noise, stated_noise_hint
 from disorder_landscape.inference.problem.distributions import Uniform
 from disorder_landscape.inference.problem.measurement import measurement_of, settings_of
@@ -27,6 +26,7 @@ from disorder_landscape.inference.problem.observation import (
 )
 from disorder_landscape.inference.problem.unknowns import unknowns_of
 from disorder_landscape.inference.report import summary
+from disorder_landscape.inference.search.few_unknowns import InversionSettings
 from disorder_landscape.inference.search.first_guess import network_guess
 from disorder_landscape.inference.search.network_features import network_features
 from disorder_landscape.inference.search.regression_rounds import RoundSettings

@@ -12,7 +12,7 @@ import xarray as xr
 
 import disorder_landscape as dl
 from disorder_landscape.inference.inferred import prior_of_result
-from disorder_landscape.inference.invert import InversionSettings
+from disorder_landscape.inference.search.few_unknowns import InversionSettings
 from disorder_landscape.inference.verdict import CONVERGED
 
 MEASURED = Path(__file__).parents[3] / "shared" / "measured"

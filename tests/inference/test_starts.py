@@ -7,7 +7,7 @@ import pytest
 
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.search.gauss_newton import gauss_newton
-from disorder_landscape.inference.search.optima import STARTS_WHEN_WIDE, Optima
+from disorder_landscape.inference.search.optima import AGREEING, STARTS_WHEN_WIDE, Optima
 from disorder_landscape.inference.search.starts import MOST_STARTS, STARTS, Starts
 from linear_data import DATA, SIZE, Linear, posterior
 
@@ -85,6 +85,25 @@ def test_where_no_start_fits_there_are_few(parts):
     np.testing.assert_array_equal(begun[0], about.mean)
     assert starts.optima.found == []
     assert not starts.optima.fits
+
+
+@pytest.mark.parametrize("right", [None, 2])
+def test_starts_at_the_best_of_draws_end_with_one_that_fits(parts, right):
+    """… or where there have been as many as asked for; then others come to the same optimum."""
+    begun = []
+
+    def steps(of, x, attempt, name, known, goal):
+        if name.endswith("some"):
+            begun.append(x)
+        if right is None or len(begun) <= right:
+            return Gaussian(40 * AXIS, 0.01 * np.eye(SIZE))
+        return gauss_newton(of, x, known=known)
+
+    starts = starts_of(parts, steps)
+    starts.start_at_best_of_draws(parts.unknowns.prior, 1, np.random.default_rng(1), 7)
+    assert starts.optima.fits == starts.optima.is_settled == (right is not None)
+    assert len(begun) == (7 if right is None else right + AGREEING[1])
+    assert len(np.unique(begun, axis=0)) == len(begun)
 
 
 def test_starts_go_on_about_the_same_distribution(parts):

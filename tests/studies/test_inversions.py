@@ -28,11 +28,11 @@ from disorder_landscape.claims.study_tables import (
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.executors.executor import Share
-from disorder_landscape.inference.invert import usable_network_features
 from disorder_landscape.inference.optimum import optimum_at
 from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.measurement import empty_measurement, simulated
+from disorder_landscape.inference.search.few_unknowns import usable_network_features
 from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED
 from disorder_landscape.model.parameters import Nanowire
 from disorder_landscape.studies import inversions, runner, unmodelled

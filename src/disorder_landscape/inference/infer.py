@@ -22,16 +22,16 @@ from disorder_landscape.config import DatasetConfig
 from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.discrepancy import BestEffort, best_effort, discrepancy_of
 from disorder_landscape.inference.given import Model, config_of, observation_of, prior_given
-from disorder_landscape.inference.invert import (
-    InversionSettings,
-    invert,
-    usable_network_features,
-    usual_settings,
-)
+from disorder_landscape.inference.invert import invert
 from disorder_landscape.inference.optimum import chi_square_excess
 from disorder_landscape.inference.problem.observation import Observation, overall_misfit
 from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.result import result_of
+from disorder_landscape.inference.search.few_unknowns import (
+    InversionSettings,
+    usable_network_features,
+    usual_settings,
+)
 from disorder_landscape.inference.search.first_guess import on_grid_of_network
 from disorder_landscape.inference.stages import (
     GAUSS_NEWTON,
@@ -46,7 +46,7 @@ from disorder_landscape.inference.verdict import verdict
 from disorder_landscape.learning.model import TrainedModel, load_model
 
 SAMPLES = 64
-SEARCH = 9
+SEARCH = 10
 """Number of the search's version. What an interrupted run of another one has found is of no use."""
 
 

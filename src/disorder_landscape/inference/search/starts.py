@@ -25,8 +25,7 @@ SHARE = 0.25
 FEWEST = 7
 """Lines of μ and of B that these have at least."""
 STARTS = 2, 4
-"""So many starts about a distribution, if none has led to an optimum that fits, or if one has, or
-where an attempt ends without one."""
+"""So many starts about a distribution, if none has led to an optimum that fits, or if one has."""
 MOST_STARTS = 128
 """There are no more than this, even if samples of the posterior ask for more."""
 NEARBY = 0.2
@@ -64,22 +63,14 @@ class Starts:
         self.some = self.optima.observation.on_some_lines(SHARE, FEWEST, rng)
 
     def start_about(
-        self,
-        found: Gaussian,
-        attempt: int,
-        rng: np.random.Generator,
-        tried: int = 0,
-        best_of_many: bool = False,
+        self, found: Gaussian, attempt: int, rng: np.random.Generator, tried: int = 0
     ) -> None:
-        """Let steps start at the mean of a distribution, if none has been tried, and at draws.
-
-        There are more starts, each the best of many draws, where fewer have led nowhere before.
-        """
+        """Let steps start at the mean of a distribution, if none has been tried, and at draws."""
         self._about = found, attempt
         optima, (few, more) = self.optima, STARTS
         while not optima.is_done:
             fits, is_wide = optima.fits, optima.is_wide
-            if tried >= (more if fits or best_of_many else few) and not is_wide:
+            if tried >= (more if fits else few) and not is_wide:
                 return
             (own,) = rng.spawn(1)
             if tried == 0:
@@ -87,12 +78,24 @@ class Starts:
             elif fits and is_surely_right(optima.observation):
                 near = Gaussian(best(optima.found).answer.mean, NEARBY**2 * found.covariance)
                 x = near.draw(own, 2)[0]
-            elif is_wide or (best_of_many and not fits):
+            elif is_wide:
                 x = self._best_of_draws(found, own)
             else:
                 x = found.draw(own, 2)[0]
             self.start_from(x, attempt)
             tried += 1
+
+    def start_at_best_of_draws(
+        self, about: Gaussian, attempt: int, rng: np.random.Generator, most: int
+    ) -> None:
+        """Let steps start at the best of many draws, again and again until an optimum fits.
+
+        The starts are no more than `most`. If one of them leads to such an optimum, others follow.
+        """
+        for own in rng.spawn(most):
+            self.start_from(self._best_of_draws(about, own), attempt)
+            if self.optima.fits:
+                return self.start_about(about, attempt, rng, tried=1)
 
     def go_on(self, rng: np.random.Generator) -> None:
         """Let there be twice as many starts, or more, about the same distribution as the last.
