@@ -104,7 +104,9 @@ def test_measurements_of_one_name_are_refused(folder, tmp_path):
         tasks_of_folder([folder / "none.nc"], tmp_path, None, settings)
 
 
-def test_pictures_are_drawn_of_results_that_are_there(monkeypatch, folder, inferred, tmp_path):
+def test_pictures_are_drawn_of_results_that_are_there(
+    monkeypatch, capsys, folder, inferred, tmp_path
+):
     """… without another inversion."""
     monkeypatch.setattr(file, "infer", None)
     settings, one = settings_of(folder), [folder / "0.nc"]
@@ -114,6 +116,10 @@ def test_pictures_are_drawn_of_results_that_are_there(monkeypatch, folder, infer
     assert task.is_done
     with pytest.raises(ArgumentError, match="plot must name a folder, as output does"):
         tasks_of_folder(one, inferred, tmp_path / "page.html", settings)
+    command = ["infer", *one, "--model", folder / "model", "--from-prior", "--samples", 4]
+    command += ["--workers", 1, "-o", inferred, "--plot", tmp_path / "others"]
+    code, out, err = landscape(monkeypatch, capsys, *command)
+    assert (code, "1 results are there; only drawn: 1" in out) == (0, True), out + err
 
 
 def test_of_two_processes_with_one_output_one_waits(folder, inferred, tmp_path):

@@ -176,20 +176,24 @@ def _infer_each(settings: Settings, tasks: Sequence[Task], executor: Executor) -
     from disorder_landscape.inference.folder import infer_one_of_many
 
     missing = [task for task in tasks if not task.is_done]
-    verdicts: Counter[str] = Counter()
+    outcomes = []
     bar = tqdm(total=len(tasks), initial=len(tasks) - len(missing), desc="infer", unit=" files")
     at_a_time = min(executor.at_a_time, max(len(missing), 1))
     pace = Pace("infer", len(missing), bar.write, warm_up=0, at_a_time=at_a_time)
     with bar:
         infer_one = partial(infer_one_of_many, settings)
         for outcome in executor.each_result(infer_one, missing, may_be_ended=True):
-            verdicts[outcome.verdict] += 1
+            outcomes.append(outcome)
             bar.write(f"{outcome.task.measurement}: {outcome.verdict or outcome.error}")
             bar.update()
             pace.step()
-    failed = verdicts.pop("", 0)
-    said = ", ".join(f"{count} {verdict}" for verdict, count in verdicts.most_common())
-    print(f"{len(tasks) - failed} results are there" + (f"; new: {said}" if said else ""))
+    failed = sum(outcome.error != "" for outcome in outcomes)
+    drawn = sum(not outcome.is_new for outcome in outcomes)
+    verdicts = Counter(outcome.verdict for outcome in outcomes if outcome.is_new)
+    new = ", ".join(f"{n} {verdict}" for verdict, n in verdicts.most_common() if verdict)
+    said = [f"{len(tasks) - failed} results are there"]
+    said += ([f"new: {new}"] if new else []) + ([f"only drawn: {drawn}"] if drawn else [])
+    print("; ".join(said))
     if failed:
         print(f"without a result: {failed}; the errors are above", file=sys.stderr)
         raise typer.Exit(1)

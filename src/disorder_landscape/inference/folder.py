@@ -62,18 +62,21 @@ class Outcome:
     task: Task
     verdict: str = ""
     error: str = ""
+    is_new: bool = True
+    """Whether it has been inferred now, and not only drawn."""
 
 
 def infer_one_of_many(settings: Settings, task: Task) -> Outcome:
     """Do as `infer_file`, or draw the result that is there; an error does not hinder the others."""
     try:
         with alone_with(task):
-            if not task.output.exists():
+            is_new = not task.output.exists()
+            if is_new:
                 result = infer_alone(settings, task)
             else:
                 result = read_dataset(task.output)
                 if not task.is_done:
                     draw(result, read_dataset(task.measurement), task.plot)
-        return Outcome(task, verdict=str(result.attrs["verdict"]))
+        return Outcome(task, verdict=str(result.attrs["verdict"]), is_new=is_new)
     except ArgumentError as error:
         return Outcome(task, error=str(error))
