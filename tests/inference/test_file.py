@@ -119,7 +119,7 @@ def test_pictures_are_drawn_of_results_that_are_there(
     command = ["infer", *one, "--model", folder / "model", "--from-prior", "--samples", 4]
     command += ["--workers", 1, "-o", inferred, "--plot", tmp_path / "others"]
     code, out, err = landscape(monkeypatch, capsys, *command)
-    assert (code, "1 results are there; only drawn: 1" in out) == (0, True), out + err
+    assert (code, "1 result is there; only drawn: 1" in out) == (0, True), out + err
 
 
 def test_of_two_processes_with_one_output_one_waits(folder, inferred, tmp_path):
