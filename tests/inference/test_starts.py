@@ -8,7 +8,7 @@ import pytest
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.search.gauss_newton import gauss_newton
 from disorder_landscape.inference.search.optima import AGREEING, STARTS_WHEN_WIDE, Optima
-from disorder_landscape.inference.search.starts import MOST_STARTS, STARTS, Starts
+from disorder_landscape.inference.search.starts import MORE_STARTS, MOST_STARTS, STARTS, Starts
 from linear_data import DATA, SIZE, Linear, posterior
 
 AXIS = np.eye(SIZE)[0]
@@ -89,7 +89,7 @@ def test_where_no_start_fits_there_are_few(parts):
 
 @pytest.mark.parametrize("right", [None, 2])
 def test_starts_at_the_best_of_draws_end_with_one_that_fits(parts, right):
-    """… or where there have been as many as asked for; then others come to the same optimum."""
+    """… or where there have been as many as are tried; then others come to the same optimum."""
     begun = []
 
     def steps(of, x, attempt, name, known, goal):
@@ -100,9 +100,9 @@ def test_starts_at_the_best_of_draws_end_with_one_that_fits(parts, right):
         return gauss_newton(of, x, known=known)
 
     starts = starts_of(parts, steps)
-    starts.start_at_best_of_draws(parts.unknowns.prior, 1, np.random.default_rng(1), 7)
+    starts.start_at_best_of_draws(parts.unknowns.prior, 1, np.random.default_rng(1))
     assert starts.optima.fits == starts.optima.is_settled == (right is not None)
-    assert len(begun) == (7 if right is None else right + AGREEING[1])
+    assert len(begun) == (MORE_STARTS if right is None else right + AGREEING[1])
     assert len(np.unique(begun, axis=0)) == len(begun)
 
 

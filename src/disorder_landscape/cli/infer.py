@@ -189,8 +189,8 @@ def _infer_each(settings: Settings, tasks: Sequence[Task], executor: Executor) -
             pace.step()
     failed = sum(outcome.error != "" for outcome in outcomes)
     drawn = sum(not outcome.is_new for outcome in outcomes)
-    verdicts = Counter(outcome.verdict for outcome in outcomes if outcome.is_new)
-    new = ", ".join(f"{n} {verdict}" for verdict, n in verdicts.most_common() if verdict)
+    verdicts = Counter(one.verdict for one in outcomes if one.is_new and not one.error)
+    new = ", ".join(f"{n} {verdict}" for verdict, n in verdicts.most_common())
     there = len(tasks) - failed
     said = [f"{there} result{' is' if there == 1 else 's are'} there"]
     said += ([f"new: {new}"] if new else []) + ([f"only drawn: {drawn}"] if drawn else [])

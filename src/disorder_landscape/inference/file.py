@@ -54,10 +54,10 @@ def infer_file(settings: Settings, task: Task, progress: Progress = silent) -> x
         As `infer`, or if a file cannot be read or written.
     """
     with alone_with(task):
-        return infer_alone(settings, task, progress)
+        return infer_when_alone(settings, task, progress)
 
 
-def infer_alone(settings: Settings, task: Task, progress: Progress = silent) -> xr.Dataset:
+def infer_when_alone(settings: Settings, task: Task, progress: Progress = silent) -> xr.Dataset:
     """Do so, in a process that is `alone_with` the task."""
     measured = read_dataset(task.measurement)
     prior, network = settings.prior_and_network()

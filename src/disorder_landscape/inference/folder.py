@@ -9,7 +9,7 @@ from pathlib import Path
 from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.dataset.store import read_dataset
 from disorder_landscape.files import check_writable
-from disorder_landscape.inference.file import Task, alone_with, draw, infer_alone
+from disorder_landscape.inference.file import Task, alone_with, draw, infer_when_alone
 from disorder_landscape.inference.settings import Settings, asked_for, asked_of
 
 PICTURES = (".html", ".pdf", ".png", ".svg")
@@ -72,7 +72,7 @@ def infer_one_of_many(settings: Settings, task: Task) -> Outcome:
         with alone_with(task):
             is_new = not task.output.exists()
             if is_new:
-                result = infer_alone(settings, task)
+                result = infer_when_alone(settings, task)
             else:
                 result = read_dataset(task.output)
                 if not task.is_done:

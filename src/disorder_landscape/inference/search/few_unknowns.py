@@ -31,9 +31,6 @@ from disorder_landscape.learning.model import TrainedModel
 TRIED_FROM = 0.15
 """Gauss–Newton steps are tried if the distribution of V is narrower than this in meV, and again
 whenever it is half as wide."""
-MORE_STARTS = 3
-"""At most so many starts, each the best of many draws, follow where an attempt ends without an
-optimum that fits."""
 
 
 @dataclass(frozen=True)
@@ -103,7 +100,7 @@ def _search(
             if optima.fits:
                 starts.start_about(start, number, rng)
             else:
-                starts.start_at_best_of_draws(start, number, rng, MORE_STARTS)
+                starts.start_at_best_of_draws(start, number, rng)
             return count
         progress(Step(number, ROUND, count, one.misfit, one.spread))
         found, count, spread = one.distribution, count + 1, one.spread

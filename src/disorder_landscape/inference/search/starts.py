@@ -26,6 +26,8 @@ FEWEST = 7
 """Lines of μ and of B that these have at least."""
 STARTS = 2, 4
 """So many starts about a distribution, if none has led to an optimum that fits, or if one has."""
+MORE_STARTS = 3
+"""At most so many at the best of many draws, where an attempt ends without such an optimum."""
 MOST_STARTS = 128
 """There are no more than this, even if samples of the posterior ask for more."""
 NEARBY = 0.2
@@ -86,16 +88,17 @@ class Starts:
             tried += 1
 
     def start_at_best_of_draws(
-        self, about: Gaussian, attempt: int, rng: np.random.Generator, most: int
+        self, about: Gaussian, attempt: int, rng: np.random.Generator
     ) -> None:
-        """Let steps start at the best of many draws, again and again until an optimum fits.
+        """Let steps start at the best of many draws until an optimum fits, MORE_STARTS at most.
 
-        The starts are no more than `most`. If one of them leads to such an optimum, others follow.
+        Where one does, others follow.
         """
-        for own in rng.spawn(most):
+        for own in rng.spawn(MORE_STARTS):
             self.start_from(self._best_of_draws(about, own), attempt)
             if self.optima.fits:
-                return self.start_about(about, attempt, rng, tried=1)
+                self.start_about(about, attempt, rng, tried=1)
+                return
 
     def go_on(self, rng: np.random.Generator) -> None:
         """Let there be twice as many starts, or more, about the same distribution as the last.
