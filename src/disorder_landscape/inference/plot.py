@@ -21,6 +21,7 @@ from disorder_landscape.inference.plot_maps import (
 )
 from disorder_landscape.inference.problem.distributions import Distribution
 from disorder_landscape.inference.problem.measurement import Measurement
+from disorder_landscape.inference.problem.parameters import BY_NAME
 from disorder_landscape.inference.report import (
     SAID,
     error_bar,
@@ -173,8 +174,9 @@ def _parameters(panel: Any, result: xr.Dataset, unknown: Mapping[str, Distributi
         bar = [[min(std, mean)], [min(std, 1 - mean)]]  # not beyond what it may be
         panel.errorbar(mean, row, xerr=np.maximum(bar, 0), fmt="k.", capsize=2, lw=0.8)
         panel.text(1.02, row, parameter_with_std(result, name), va="center")
-        panel.text(-0.02, row, f"{name}, before: {prior_as_text(belief)}", va="center", ha="right")
-    panel.set(xlim=(-0.75, 1.65), ylim=(len(unknown) - 0.4, -0.6))
+        before = f"{BY_NAME[name].long_name}, before: {prior_as_text(belief)}"
+        panel.text(-0.02, row, before, va="center", ha="right")
+    panel.set(xlim=(-1.6, 1.7), ylim=(len(unknown) - 0.4, -0.6))
     panel.axis("off")
     panel.set_title("parameters, each on the range that it may have (grey)")
 

@@ -26,7 +26,7 @@ def parameter_with_std(result: xr.Dataset, name: str) -> str:
     mean, std = float(result[f"{name}_mean"]), float(result[f"{name}_std"])
     digits = max(0, int(1 - np.floor(np.log10(std)))) if std > 0 else 6
     unit = result[name].attrs["units"]
-    return f"{mean:.{digits}f} ± {std:.{digits}f}" + ("" if unit == "1" else f" {unit}")
+    return f"{mean:z.{digits}f} ± {std:.{digits}f}" + ("" if unit == "1" else f" {unit}")
 
 
 def prior_as_text(belief: Distribution) -> str:
