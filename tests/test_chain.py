@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -93,6 +94,15 @@ def test_a_finished_chain_is_left_alone(run, build):
     said = landscape("train", "--config", CONFIG, "--build", build)
     assert "nothing to do" in said.stdout + said.stderr
     assert (run.model_folder / "network.keras").stat().st_mtime_ns == before
+
+
+def test_a_network_of_another_configuration_is_not_scored(run):
+    epochs = run.config.training.epochs + 1
+    training = run.config.training.model_copy(update={"epochs": epochs})
+    other = replace(run, config=run.config.model_copy(update={"training": training}))
+    for scored in (chain.evaluate, chain.evaluation):
+        with pytest.raises(ArgumentError, match="config must be that of the network"):
+            scored(other)
 
 
 def test_predict_from_a_file_is_predict_from_the_library(run, tmp_path):

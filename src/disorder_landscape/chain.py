@@ -25,6 +25,7 @@ from disorder_landscape.estimates import announce_repeated
 from disorder_landscape.executors import slurm
 from disorder_landscape.executors.executor import WHOLE, Executor, Share
 from disorder_landscape.executors.local import LocalProcesses
+from disorder_landscape.learning.model_files import NETWORK, SCALER, is_trained
 from disorder_landscape.locks import kept_from_others
 from disorder_landscape.model.parameters import NOISE_FLOOR
 from disorder_landscape.model.quantities import with_units
@@ -80,7 +81,7 @@ class Run:
     @property
     def is_trained(self) -> bool:
         """Whether the folder of the network holds a finished training."""
-        return (self.model_folder / "metrics.json").exists()
+        return is_trained(self.model_folder)
 
     @property
     def evaluation_file(self) -> Path:
@@ -199,12 +200,20 @@ def evaluate(run: Run) -> xr.Dataset:
     xarray.Dataset
         components, alpha, potential and components_predicted, alpha_predicted, potential_predicted,
         with a dim realization; the scores R2, delta_V, delta_alpha, R2_<label> as attributes.
+
+    Raises
+    ------
+    ArgumentError
+        If the folder holds no finished training of this configuration.
     """
     from disorder_landscape.learning.metrics import score
     from disorder_landscape.learning.model import load_model
     from disorder_landscape.learning.prediction import predict
     from disorder_landscape.learning.scaling import label_array
 
+    if not run.shipped and run.is_trained:
+        but = f"'{run.model_folder}' holds a network that was trained with another"
+        require(_holds_this_training(run), "config", "be that of the network", but)
     test = read_test_set(run)
     model = load_model(run.model_folder)
     predicted = predict(model, test)
@@ -271,15 +280,16 @@ def _holds_this_training(run: Run) -> bool:
 
 
 def _fingerprint(run: Run) -> str:
-    """Return a hash that changes with the network or with the test set."""
+    """Return a hash that changes with the configuration, the network or the test set."""
     try:
-        network = (run.model_folder / "network.keras").read_bytes()
+        network, scaler = ((run.model_folder / name).read_bytes() for name in (NETWORK, SCALER))
     except OSError as error:
         must = "be a folder written by `landscape train`"
-        but = f"'{run.model_folder}' has no network ({error.strerror})"
+        but = f"'{run.model_folder}' has no complete network ({error.strerror})"
         raise ArgumentError("model", must, but) from None
-    digest = hashlib.sha256(network)
-    digest.update(run.config.dataset.model_dump_json().encode())
+    digest = hashlib.sha256(network + scaler)
+    for section in (run.config.dataset, run.config.network, run.config.training):
+        digest.update(section.model_dump_json().encode())
     if run.shipped:
         digest.update(shipped_test_set(run.name).read_bytes())
     return digest.hexdigest()

@@ -136,11 +136,20 @@ def test_the_command_line_asks_for_what_it_needs(tmp_path):
         (["--executor", "slurm"], "site must be given with --executor slurm"),
         (["--executor", "dask"], "scheduler must be given with --executor dask"),
         (["--share", "0/3"], "share must be like 3/8"),
+        (["--dry-run"], "dry-run must be left out without --executor slurm"),
+        (["--site", "a.toml", "--executor", "dask"], "site must be left out without --executor"),
+        (["--scheduler", "tcp://host:8786"], "scheduler must be left out without --executor dask"),
     ):
         told = CliRunner().invoke(app, [*config, *options])
         assert isinstance(told.exception, ArgumentError)
         assert said in str(told.exception)
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("options", [["--share", "1/2"], ["--executor", "slurm"]])
+def test_one_result_is_not_shared_out(options):
+    told = CliRunner().invoke(app, ["infer", "one.nc", "-o", "result.nc", *options])
+    assert "output must be a folder" in str(told.exception)
 
 
 @pytest.mark.parametrize(

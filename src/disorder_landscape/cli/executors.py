@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from disorder_landscape.arguments import ArgumentError
+from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.executors.executor import Executor
 from disorder_landscape.executors.local import LocalProcesses
 
@@ -38,6 +38,25 @@ DryRun = Annotated[
 Scheduler = Annotated[
     str | None, typer.Option("--scheduler", help="Address of a Dask scheduler, tcp://HOST:8786.")
 ]
+
+
+def check_options_of(
+    where: Where, site_file: Path | None, dry_run: bool, scheduler: str | None
+) -> None:
+    """Refuse options of another executor, which would be without effect.
+
+    Raises
+    ------
+    ArgumentError
+        If there are any.
+    """
+    for name, is_given, executor in (
+        ("site", site_file is not None, Where.SLURM),
+        ("dry-run", dry_run, Where.SLURM),
+        ("scheduler", scheduler is not None, Where.DASK),
+    ):
+        must = f"be left out without --executor {executor}"
+        require(not is_given or where is executor, name, must, f"the executor is {where}")
 
 
 def executor_of(where: Where, workers: int, scheduler: str | None) -> Executor:

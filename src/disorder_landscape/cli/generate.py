@@ -10,6 +10,7 @@ from disorder_landscape.cli.executors import (
     Scheduler,
     SiteFile,
     Where,
+    check_options_of,
     executor_of,
     on_slurm,
 )
@@ -34,6 +35,7 @@ def generate(
     from disorder_landscape import chain
     from disorder_landscape.dataset.shards import missing_shards
 
+    check_options_of(executor, site, dry_run, scheduler)
     run, taken = chain.open_run(config, build), parse_share(share)
     with resumable():
         if executor is Where.SLURM:

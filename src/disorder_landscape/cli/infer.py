@@ -18,6 +18,7 @@ from disorder_landscape.cli.executors import (
     Scheduler,
     SiteFile,
     Where,
+    check_options_of,
     executor_of,
     on_slurm,
 )
@@ -103,12 +104,16 @@ def infer(
     from disorder_landscape.inference.noise_hints import parse_noise
     from disorder_landscape.inference.settings import Settings
 
+    check_options_of(executor, site, dry_run, scheduler)
     errors = None if noise is None else parse_noise(noise)
     settings = Settings(prior, model, errors, from_prior, samples, seed, discrepancy, made_here())
     is_file = len(measurements) == 1 and output.suffix and not output.is_dir()
     fits = len(measurements) == 1 or output.suffix != ".nc"
     require(fits, "output", "name a folder, for several measurements", f"it is '{output}'")
     if is_file:
+        alone = executor is Where.LOCAL and share == "1/1"
+        must = "be a folder, where jobs, other machines or a share of the tasks are asked for"
+        require(alone, "output", must, f"it is '{output}'")
         _infer_alone(settings, Task(measurements[0], output, plot))
         return
     with resumable():

@@ -14,6 +14,7 @@ from disorder_landscape.cli.executors import (
     Scheduler,
     SiteFile,
     Where,
+    check_options_of,
     executor_of,
     on_slurm,
 )
@@ -56,6 +57,7 @@ def study(
     from disorder_landscape.studies.runner import carry_out
     from disorder_landscape.studies.study import Place, study_names
 
+    check_options_of(executor, site, dry_run, scheduler)
     place = Place(output, build, executor_of(executor, workers, scheduler), parse_share(share))
     if listed:
         for name in study_names():

@@ -211,8 +211,8 @@ def _fingerprint(observation: Observation, trained: TrainedModel | None, options
     given = observation.unknowns.given.to_dict()
     said = json.dumps([SEARCH, given, observation.noise.tolist(), options])
     arrays = m.G, m.mu, m.B, m.bias, np.array(m.theta)
-    weights = [] if trained is None else trained.network.get_weights()
-    return said.encode() + b"".join(np.ascontiguousarray(x).tobytes() for x in (*arrays, *weights))
+    measured = b"".join(np.ascontiguousarray(x).tobytes() for x in arrays)
+    return said.encode() + measured + (b"" if trained is None else trained.fingerprint())
 
 
 def _on_grid_of_network(config: DatasetConfig, observation: Observation) -> Observation:

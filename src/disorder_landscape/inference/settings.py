@@ -11,7 +11,7 @@ from pathlib import Path
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.dataset.hdf5 import open_hdf5
 from disorder_landscape.inference.problem.prior import Prior
-from disorder_landscape.learning.model import CONFIG, NETWORK, SCALER
+from disorder_landscape.learning.model_files import CONFIG, NETWORK, SCALER
 
 ASKED = "asked"
 """Attribute of a result: the measurement, the model and the options that it answers."""

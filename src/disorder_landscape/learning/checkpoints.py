@@ -18,12 +18,11 @@ from disorder_landscape.files import replacing, write_json
 from disorder_landscape.learning.backend import import_keras
 from disorder_landscape.learning.curves import Epoch
 from disorder_landscape.learning.model import (
-    CONFIG,
-    NETWORK,
     load_network,
     read_model_file,
     save_network,
 )
+from disorder_landscape.learning.model_files import CONFIG, NETWORK
 
 CURVES = "curves.json"
 """In a checkpoint: the record of each epoch."""

@@ -1,12 +1,8 @@
-"""A trained network with everything it needs to be used, and the folder that holds it.
-
-The folder: network.keras (weights and layers), scaler.json, config.json (the run's configuration,
-the dataset it was trained on and package versions), metrics.json (scores; written last, it marks a
-finished training), curves.csv with curves.pdf and curves.png.
-"""
+"""A trained network with everything it needs to be used, read from its folder and written."""
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -24,6 +20,7 @@ from disorder_landscape.config import Config, DatasetConfig
 from disorder_landscape.files import read_json, replacing, write_json
 from disorder_landscape.learning.backend import import_keras
 from disorder_landscape.learning.mirror import MirrorImages, mirrored_labels
+from disorder_landscape.learning.model_files import CONFIG, METRICS, NETWORK, SCALER, is_trained
 from disorder_landscape.learning.scaling import (
     ConductanceArray,
     Conductances,
@@ -32,8 +29,6 @@ from disorder_landscape.learning.scaling import (
 )
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.model.quantities import AXES
-
-NETWORK, SCALER, CONFIG, METRICS = "network.keras", "scaler.json", "config.json", "metrics.json"
 
 SAME_POINT = 1e-6
 """Two points of a grid are the same that are as near, in meV or T: room for float32 files."""
@@ -86,10 +81,20 @@ class TrainedModel:
 
     def save(self, folder: Path) -> None:
         """Write network.keras, without the optimizer's state, and scaler.json."""
-        inputs = None if self.inputs is None else self.inputs.to_dict()
-        write_json(folder / SCALER, {"labels": self.labels.to_dict(), "inputs": inputs})
+        write_json(folder / SCALER, self._scalers)
         network = import_keras().Model(self.network.inputs, self.network.outputs)  # not compiled
         save_network(network, folder / NETWORK)
+
+    def fingerprint(self) -> bytes:
+        """Return all that its predictions and its scores depend on."""
+        said = self.config.model_dump(mode="json"), self._scalers, dict(self.r2_by_label)
+        weights = (np.ascontiguousarray(layer).tobytes() for layer in self.network.get_weights())
+        return json.dumps(said).encode() + b"".join(weights)
+
+    @property
+    def _scalers(self) -> dict[str, Any]:
+        inputs = None if self.inputs is None else self.inputs.to_dict()
+        return {"labels": self.labels.to_dict(), "inputs": inputs}
 
 
 def points_of_grid(
@@ -164,8 +169,7 @@ def load_model(folder: str | Path) -> TrainedModel:
         If the folder is not one of a finished training, or a file in it is damaged.
     """
     folder = existing_folder(folder)
-    finished = (folder / METRICS).exists()
-    require(finished, "model", _MODEL, f"the training in '{folder}' is not finished")
+    require(is_trained(folder), "model", _MODEL, f"the training in '{folder}' is not finished")
     config = load_model_config(folder)
     scaler = read_model_file(folder / SCALER)
     try:

@@ -29,7 +29,8 @@ from disorder_landscape.learning.curves import Epoch, plot_curves, write_curves
 from disorder_landscape.learning.ensembles import combine, member_configs
 from disorder_landscape.learning.examples import Examples, Rows, chosen, split
 from disorder_landscape.learning.metrics import Scores, score
-from disorder_landscape.learning.model import METRICS, TrainedModel, on_grid_of, read_model_file
+from disorder_landscape.learning.model import TrainedModel, on_grid_of, read_model_file
+from disorder_landscape.learning.model_files import METRICS
 from disorder_landscape.learning.networks.build import build_network
 from disorder_landscape.learning.scaling import (
     Conductances,

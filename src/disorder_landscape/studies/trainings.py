@@ -16,6 +16,7 @@ from pydantic import BaseModel, Field, field_validator, model_validator
 
 from disorder_landscape.chain import Run, dataset_folder, generate
 from disorder_landscape.config import Config, checked
+from disorder_landscape.learning.model_files import METRICS, is_trained
 from disorder_landscape.studies.study import PLANS, Part, Place, Plan, one_of, study_names
 from disorder_landscape.studies.trainings_table import Result
 
@@ -162,7 +163,7 @@ def model_folder(run: PlannedRun, build: Path) -> Path:
 
 
 def _is_finished(run: PlannedRun, place: Place) -> bool:
-    return (model_folder(run, place.build) / "metrics.json").exists()
+    return is_trained(model_folder(run, place.build))
 
 
 def _result(run: PlannedRun, folder: Path) -> Result:
@@ -171,7 +172,7 @@ def _result(run: PlannedRun, folder: Path) -> Result:
     from disorder_landscape.learning.model import load_model, read_model_file
 
     dataset, network, training = run.config.dataset, run.config.network, run.config.training
-    metrics = read_model_file(folder / "metrics.json")
+    metrics = read_model_file(folder / METRICS)
     used = training.realizations or split(dataset.realizations, training.test_fraction)[0].stop
     weights = load_model(folder).network.trainable_weights
     return Result(
