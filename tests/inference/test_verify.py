@@ -17,6 +17,7 @@ from disorder_landscape.model.quantities import CONDUCTANCES
 
 SITES, COMPONENTS, CONTROLS = 100, 3, 19
 CONFIG = DatasetConfig(realizations=1, sites=SITES, components=COMPONENTS)
+OTHER_LEADS = CONFIG.model_copy(update={"wire": WireConfig(lead_mu=10.0)})
 TRUE = control_wires(CONFIG, 1, seed=5)[0]
 SETTINGS = {"mu": [0.1, 0.4], "B": [0.2, 0.5], "bias": [-0.03, 0.01, 0.05]}
 
@@ -141,11 +142,9 @@ def test_noise_is_that_which_each_measurement_states():
 
 
 def test_leads_are_those_of_the_model():
-    leads = WireConfig(lead_mu=10.0)
-    config = DatasetConfig(realizations=1, sites=SITES, components=COMPONENTS, wire=leads)
     wire = replace(TRUE, lead_mu=10.0)
     predicted = prediction_of(TRUE, TRUE.potential.mean())
-    found = verify(predicted, measure(wire), config=config, shifts=[0.0])
+    found = verify(predicted, measure(wire), config=OTHER_LEADS, shifts=[0.0])
     assert found["mismatch"].max() < 1e-9
 
 
@@ -359,14 +358,15 @@ def test_samples_of_an_inversion_make_the_data_or_not(barrier):
         assert says in table(result.assign_coords(measurement=["a"]))[-1]
 
 
-def test_wrong_disorder_is_measured_in_a_wire_as_the_inversion_has_found_it():
+@pytest.mark.parametrize("config", [None, OTHER_LEADS])
+def test_wrong_disorder_is_measured_in_a_wire_as_the_inversion_has_found_it(config):
     """… whose gap is another than the paper's, so that biases are too."""
     wire = replace(TRUE, delta0=0.3)
     found = inversion_of(wire, np.zeros(60))
     prior = dl.Prior(COMPONENTS, SITES, alpha=(1, 20), delta0=0.3)
     found = found.assign_attrs(prior=json.dumps(prior.to_dict()))
     measured = measure(wire, bias=[-0.2, 0.1])
-    result = verify(found, measured, shifts=[0.0])
+    result = verify(found, measured, shifts=[0.0], config=config)
     assert result["mismatch"].max() < 1e-9
     assert result["control_mismatch"].min() > 1e-4
     one, two = (wires_like(wire, prior, 3, seed=7) for _ in range(2))

@@ -41,7 +41,11 @@ class Realization:
 
 def realization(config: DatasetConfig, index: int) -> Realization:
     """Return realization `index`, a function of (seed, index) and the disorder model alone."""
-    rng = np.random.default_rng([config.seed, index])
+    return drawn(config, np.random.default_rng([config.seed, index]))
+
+
+def drawn(config: DatasetConfig, rng: np.random.Generator) -> Realization:
+    """Return a realization of a dataset's disorder model, which need not be in the dataset."""
     alpha = rng.uniform(*config.alpha_range)
     components, potential = disorder_realization(
         rng, config.components, config.sites, config.correlation_length, config.amplitude
@@ -63,7 +67,7 @@ def simulate(config: DatasetConfig, indices: Iterable[int]) -> xr.Dataset:
         as float32 in e²/h, and energies (realization, mu, B).
     """
     index = np.array(list(indices))
-    drawn = [realization(config, i) for i in index]
+    wires = [realization(config, i) for i in index]
     solved = [
         conductance(
             one.wire,
@@ -73,7 +77,7 @@ def simulate(config: DatasetConfig, indices: Iterable[int]) -> xr.Dataset:
             config.temperature,
             energy_spacing=config.energy_spacing,
         )
-        for one in drawn
+        for one in wires
     ]
     numbers = {name: STORED_AS[name] for name in STORED_AS if name in solved[0]}
     data = {
@@ -84,9 +88,9 @@ def simulate(config: DatasetConfig, indices: Iterable[int]) -> xr.Dataset:
             )
             for name, kind in numbers.items()
         },
-        "components": (("realization", "component"), np.array([one.components for one in drawn])),
-        "alpha": ("realization", np.array([one.alpha for one in drawn])),
-        "potential": (("realization", "site"), np.array([one.potential for one in drawn])),
+        "components": (("realization", "component"), np.array([one.components for one in wires])),
+        "alpha": ("realization", np.array([one.alpha for one in wires])),
+        "potential": (("realization", "site"), np.array([one.potential for one in wires])),
     }
     coords = {
         "realization": index,

@@ -69,8 +69,8 @@ def verify(
         Of the controls.
     config : DatasetConfig, optional
         Disorder model of the network, from which controls are drawn; by default the paper's with
-        the prediction's number of sites and of components. Of an inversion, by default, its prior's
-        disorder and α, in wires that are as it has found them in all else.
+        the prediction's number of sites and of components. Of an inversion controls are as it has
+        found the wire but for disorder and α, which are by default of its prior.
     shifts : array, shape (shift,)
         Means of V in meV that are tried, increasing, with finer steps around the best one then;
         0 takes the potentials as they are.

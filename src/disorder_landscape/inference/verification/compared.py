@@ -86,9 +86,12 @@ def compared(
         wrong = wires_like(predicted, prior_of_result(prediction), controls, seed)
         return Compared([predicted, *wrong], measured, samples)
     model = disorder_model(prediction, predicted, config)
-    wires = [predicted, *control_wires(model, controls, seed)]
-    of_model = [replace(wire, lead_mu=model.wire.lead_mu) for wire in wires]
-    return Compared(of_model, measured, samples)
+    wrong = control_wires(model, controls, seed)
+    if is_inversion:
+        wrong = [replace(predicted, potential=one.potential, alpha=one.alpha) for one in wrong]
+    else:
+        predicted = replace(predicted, lead_mu=model.wire.lead_mu)
+    return Compared([predicted, *wrong], measured, samples)
 
 
 def _guessed_wire(prediction: xr.Dataset) -> Nanowire:

@@ -9,9 +9,9 @@ import xarray as xr
 
 from disorder_landscape.arguments import require
 from disorder_landscape.config import DatasetConfig
+from disorder_landscape.dataset.realizations import drawn
 from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.problem.unknowns import Unknowns
-from disorder_landscape.model.disorder import disorder_realization
 from disorder_landscape.model.parameters import Nanowire
 
 
@@ -43,12 +43,5 @@ def wires_like(wire: Nanowire, prior: Prior, count: int, seed: int = 0) -> list[
 
 def control_wires(config: DatasetConfig, count: int, seed: int = 0) -> list[Nanowire]:
     """Return wires with random disorder of a model, which are realizations of no dataset."""
-    wires = []
-    for index in range(count):
-        rng = np.random.default_rng([seed, index, 1])  # realizations are drawn from pairs
-        alpha = rng.uniform(*config.alpha_range)
-        V = disorder_realization(
-            rng, config.components, config.sites, config.correlation_length, config.amplitude
-        )[1]
-        wires.append(Nanowire(V, alpha=alpha))
-    return wires
+    rngs = (np.random.default_rng([seed, index, 1]) for index in range(count))  # others have two
+    return [drawn(config, rng).wire for rng in rngs]
