@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from disorder_landscape import Nanowire
+from disorder_landscape.model.disorder import positions
 from plotting import FULL_WIDTH, INPUT, PREDICTION, inches, keep_labels_inside, write
 from wires import in_rows, letters
 
@@ -38,7 +39,7 @@ def disorder_data(chosen: xr.Dataset) -> xr.Dataset:
     wires = [[Nanowire(V) for V in pair] for pair in table["potential"].to_numpy()]
     potential = np.array([[wire.potential_with_barriers for wire in pair] for pair in wires])
     attrs = {"units": "meV", "long_name": "disorder potential with barriers"}
-    x = (table["site"].to_numpy() + 0.5) * wires[0][0].lattice / 1000
+    x = positions(wires[0][0].sites, wires[0][0].lattice)
     drawn = table.assign(potential=(table["potential"].dims, potential, attrs)).assign_coords(
         x=("site", x, {"units": "um", "long_name": "position along the wire"})
     )

@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 
 from command import Request, figure_script
 from disorder_landscape import Nanowire, local_density_of_states, modes, topological_visibility
+from disorder_landscape.model.disorder import positions
 from plotting import (
     FULL_WIDTH,
     INPUT,
@@ -81,7 +82,7 @@ def draw(data: xr.Dataset) -> Figure:
         ],
         dtype=object,
     )
-    x = data.attrs["lattice"] * 1e-3 * np.arange(data.sizes["site"])
+    x = positions(data.sizes["site"], data.attrs["lattice"])
     norms = Normalize(-1.0, 1.0), Normalize(0.0, float(data["LDOS"].quantile(WITHIN).round(1)))
     highest = 1.05 * float(max(data["gamma_A"].max(), data["gamma_B"].max()))
     for i, letter in enumerate(letters(data)):

@@ -41,10 +41,9 @@ ARROW = {
 def data(request: Request) -> xr.Dataset:
     """Return the length in µm and the barriers in meV that the sketch states."""
     wire = Nanowire(np.zeros(SITES))
-    length = wire.sites * wire.lattice / 1000
     return xr.Dataset(
         {
-            "length": ((), length, {"units": "um", "long_name": "length of the wire"}),
+            "length": ((), wire.length, {"units": "um", "long_name": "length of the wire"}),
             "barrier": ("lead", list(wire.barrier), {"units": "meV", "long_name": "barriers"}),
         },
         coords={"lead": ["L", "R"]},

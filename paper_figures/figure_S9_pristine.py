@@ -85,8 +85,7 @@ def data(request: Request) -> xr.Dataset:
         panels.append(_lettered(at_cut.isel(mu=0, drop=True), letter))
     merged = xr.merge([T_IV.rename(mu="mu_a", B="B_a"), transition, *panels])
     parameters = {name: getattr(wire, name) for name in ("alpha", "gamma", "delta0", "g")}
-    length = wire.sites * wire.lattice / 1000  # µm
-    return merged.drop_attrs(deep=False).assign_attrs(CUTS | parameters, length=length)
+    return merged.drop_attrs(deep=False).assign_attrs(CUTS | parameters, length=wire.length)
 
 
 def _lettered(G: xr.Dataset, letter: str) -> xr.Dataset:

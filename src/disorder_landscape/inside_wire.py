@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from disorder_landscape.files import write_picture
+from disorder_landscape.model.disorder import positions
 from disorder_landscape.model.parameters import FloatArray, Nanowire
 from disorder_landscape.model.quantities import with_units
 from disorder_landscape.observables.density_of_states import local_density_of_states
@@ -69,7 +70,7 @@ def plot_inside(result: xr.Dataset, path: Path) -> None:
 
     figure = Figure(figsize=(5, 6), layout="constrained")
     above, middle, below = figure.subplots(3, 1, sharex=True, height_ratios=(1, 2, 1))
-    x = result.attrs["lattice"] * 1e-3 * np.arange(result.sizes["site"])
+    x = positions(result.sizes["site"], result.attrs["lattice"])
     above.plot(x, result.potential, "k-", lw=1)
     above.set_ylabel("$V$ (meV)")
     above.set_title(f"µ = {result.attrs['mu']:g} meV, B = {result.attrs['B']:g} T", loc="left")

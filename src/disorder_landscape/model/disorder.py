@@ -86,6 +86,14 @@ def potential_from_components(
     return np.asarray(V)
 
 
+def positions(sites: int, lattice: float) -> FloatArray:
+    """Return x of the sites, (site,) in µm, in which the components are cosines of whole periods.
+
+    The lattice spacing is in nm; sites are in the middle of theirs.
+    """
+    return (np.arange(sites) + 0.5) * lattice / 1000
+
+
 @lru_cache
 def mean_reduction(
     sites: int,

@@ -107,10 +107,7 @@ class Nanowire:
             value = getattr(self, name)
             if not (value is None and name in FOLLOWING):
                 checked[name] = number_in(name, value, low, high, unit)
-        must = "be two numbers in meV, left and right"
-        barrier = reals("barrier", self.barrier, must)
-        require(barrier.shape == (2,), "barrier", must, f"it is {shown(self.barrier)}")
-        checked["barrier"] = tuple(number_in("barrier", b, *BARRIER_RANGE) for b in barrier)
+        checked["barrier"] = checked_barrier(self.barrier)
         for name, value in checked.items():
             object.__setattr__(self, name, value)
 
@@ -135,6 +132,11 @@ class Nanowire:
     def sites(self) -> int:
         """Number of sites."""
         return len(self.potential)
+
+    @property
+    def length(self) -> float:
+        """In µm."""
+        return self.sites * self.lattice / 1000
 
     @property
     def hopping(self) -> float:
@@ -227,6 +229,21 @@ def checked_temperature(temperature: object) -> float:
     must = f"be 0 or from {COLDEST:g} to {HOTTEST:g} K"
     require(T == 0 or T >= COLDEST, "temperature", must, f"it is {T:g}")
     return T
+
+
+def checked_barrier(barrier: object) -> tuple[float, float]:
+    """Return the barriers on both ends in meV.
+
+    Raises
+    ------
+    ArgumentError
+        If they are not two numbers within their range.
+    """
+    must = "be two numbers in meV, left and right"
+    both = reals("barrier", barrier, must)
+    require(both.shape == (2,), "barrier", must, f"it is {shown(barrier)}")
+    left, right = (number_in("barrier", one, *BARRIER_RANGE) for one in both)
+    return left, right
 
 
 def checked_potential(potential: ArrayLike) -> FloatArray:

@@ -19,6 +19,7 @@ from disorder_landscape.model.parameters import (
     TEMPERATURE,
     FloatArray,
     Nanowire,
+    checked_barrier,
     checked_temperature,
 )
 from disorder_landscape.model.quantities import AXES, CONDUCTANCES
@@ -168,7 +169,7 @@ def measurement_of(dataset: xr.Dataset, usual: Mapping[str, object] | None = Non
         bias=bias[there],
         left_out=bias[~there],
         theta=number_in("theta", settings["theta"], -FULL_TURN, FULL_TURN, "radians"),
-        barrier=_two_barriers(settings["barrier"]),
+        barrier=checked_barrier(settings["barrier"]),
         temperature=checked_temperature(settings["temperature"]),
         axis=axis,
         stated=_stated(dataset.attrs),
@@ -191,7 +192,7 @@ def _stated(attrs: Mapping[Any, object]) -> dict[str, float]:
     if "temperature" in attrs:
         stated["temperature"] = checked_temperature(attrs["temperature"])
     if "barrier" in attrs:
-        stated["barrier_left"], stated["barrier_right"] = _two_barriers(attrs["barrier"])
+        stated["barrier_left"], stated["barrier_right"] = checked_barrier(attrs["barrier"])
     return stated
 
 
@@ -262,7 +263,3 @@ def _axis(dataset: xr.Dataset, name: str, largest: float) -> FloatArray:
     unit = str(dataset[name].attrs.get("units", units[0]))
     require(unit in units, name, f"be in {units[0]}", f"its units are {unit}")
     return grid_in(name, dataset[name].to_numpy(), -largest, largest, units[0])
-
-
-def _two_barriers(stated: object) -> tuple[float, float]:
-    return Nanowire(np.zeros(2), barrier=stated).barrier  # type: ignore[arg-type]
