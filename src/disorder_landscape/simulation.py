@@ -10,7 +10,6 @@ import numpy as np
 import xarray as xr
 
 from disorder_landscape.arguments import ArgumentError, numbers_of, require, whole_number_in
-from disorder_landscape.conductance_picture import colour_scale, symbol
 from disorder_landscape.files import check_netcdf, check_writable, write_picture
 from disorder_landscape.model.disorder import disorder_realization
 from disorder_landscape.model.parameters import (
@@ -24,6 +23,7 @@ from disorder_landscape.observables.conductance import Progress, conductance
 from disorder_landscape.observables.visibility import topological_visibility
 from disorder_landscape.parts import needs
 from disorder_landscape.potential_file import read_potential
+from disorder_landscape.symbols import colour_scale, symbol
 
 COMPONENTS = 5
 """Of the disorder that a command draws, unless it says otherwise: the paper's smaller number."""

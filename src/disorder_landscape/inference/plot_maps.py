@@ -8,12 +8,12 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from disorder_landscape.conductance_picture import colour_scale, symbol
 from disorder_landscape.inference.problem.measurement import Measurement
 from disorder_landscape.inference.problem.observation import errors_variance
 from disorder_landscape.inference.report import SURE, has_dissipation
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.model.quantities import CONDUCTANCES
+from disorder_landscape.symbols import colour_scale, symbol
 
 RESIDUAL = {"cmap": "RdBu_r", "vmin": -4, "vmax": 4}
 """How residuals are shown, in standard deviations of all errors, the simulation's included."""
