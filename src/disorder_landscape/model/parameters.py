@@ -231,7 +231,7 @@ def checked_temperature(temperature: object) -> float:
     return T
 
 
-def checked_barrier(barrier: object) -> tuple[float, float]:
+def checked_barrier(barrier: ArrayLike) -> tuple[float, float]:
     """Return the barriers on both ends in meV.
 
     Raises

@@ -116,7 +116,7 @@ def simulated(wires: Nanowire | Sequence[Nanowire], at: Measurement) -> FloatArr
     return np.stack([G[name].to_numpy() for name in CONDUCTANCES], axis=-1)
 
 
-def measurement_of(dataset: xr.Dataset, usual: Mapping[str, object] | None = None) -> Measurement:
+def measurement_of(dataset: xr.Dataset, usual: Mapping[str, Any] | None = None) -> Measurement:
     """Return a measurement of one wire, checked.
 
     Parameters
@@ -176,7 +176,7 @@ def measurement_of(dataset: xr.Dataset, usual: Mapping[str, object] | None = Non
     )
 
 
-def _stated(attrs: Mapping[Any, object]) -> dict[str, float]:
+def _stated(attrs: Mapping[Any, Any]) -> dict[str, float]:
     """Return what attributes say of the device."""
     stated = {
         name: number_in(name, attrs[name], *PARAMETER_RANGES[name])
