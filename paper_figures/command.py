@@ -15,7 +15,7 @@ from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.chain import FIVE, Run, evaluation, preset_run
 from disorder_landscape.config import Config
 from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
-from disorder_landscape.files import write_picture
+from disorder_landscape.pictures import write_picture
 from plotting import paper_style
 
 EVALUATED = [

@@ -9,12 +9,12 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from disorder_landscape.model.quantities import CONDUCTANCES
+from disorder_landscape.symbols import symbol
 from plotting import (
     FULL_WIDTH,
-    LABELS,
-    LOCAL,
     colour_bar,
     conductance_scale,
+    conductance_unit,
     draw_map,
     inches,
     keep_labels_inside,
@@ -87,7 +87,7 @@ def _draw_maps(
         axes = inches(figure, left + column * (panel + GAP), bottom, panel, panel)
         draw_map(axes, data[name].isel(row=row), y, *conductance_scale(data[name]))
         if row == 0:
-            axes.set_title(LABELS[name])
+            axes.set_title(symbol(name))
         panels[row, column] = axes
     outer_labels(panels, "B", y)
     return panels
@@ -100,9 +100,9 @@ def _draw_colour_bars(
     for column, name in enumerate(CONDUCTANCES):
         place = (left + column * (panel + GAP) + 0.05, bottom, panel - 0.1, 0.07)
         scale = conductance_scale(data[name])
-        unit = 1.0 if name in LOCAL else 1e-3
-        bar = colour_bar(figure, place, *scale, data[name], unit)
+        bar = colour_bar(figure, place, *scale, data[name], conductance_unit(name)[0])
         keep_labels_inside(bar.ax.xaxis)
     pair = 2 * panel + GAP
-    for i, label in enumerate(("$G$ [$e^2/h$]", r"$G$ [$10^{-3}\,e^2/h$]")):
+    for i, name in enumerate(CONDUCTANCES[::2]):
+        label = f"$G$ {conductance_unit(name)[1]}"
         write(figure, left + i * (pair + GAP) + pair / 2, bottom - 0.17, label, ha="center")

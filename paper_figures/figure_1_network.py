@@ -21,7 +21,8 @@ from matplotlib.patches import Patch
 from command import Request, figure_script
 from disorder_landscape.learning.networks.build import build_network
 from disorder_landscape.learning.scaling import CHANNELS, label_names
-from plotting import FULL_WIDTH, LABELS, inches
+from disorder_landscape.symbols import symbol
+from plotting import FULL_WIDTH, inches
 from solids import DEPTH, draw_box
 
 COLOURS = {
@@ -210,7 +211,7 @@ def _draw_input_axes(axes: Axes, layer: Layer, per_point: float, per_root: float
     back = (LEFT + width + DEPTH[0] * depth / 2 + 0.05, bottom + DEPTH[1] * depth / 2 - 0.03)
     axes.text(*back, "$B$", ha="left", va="top")
     top = bottom + height + DEPTH[1] * depth + 0.04
-    names = [LABELS[name] for name in CHANNELS]
+    names = [symbol(name) for name in CHANNELS]
     text = ", ".join(names[:2]) + ",\n" + ", ".join(names[2:])
     axes.text(LEFT - 0.3, top, text, ha="left", va="bottom", **SMALL_TEXT)
 

@@ -25,13 +25,13 @@ from disorder_landscape.inference.verification.comparison import scores
 from disorder_landscape.inference.verification.controls import control_wires
 from disorder_landscape.model.disorder import MEAN_STD
 from disorder_landscape.model.quantities import CONDUCTANCES
+from disorder_landscape.symbols import symbol
 from plotting import (
     FULL_WIDTH,
-    LABELS,
-    LOCAL,
     PREDICTION,
     colour_bar,
     conductance_scale,
+    conductance_unit,
     draw_map,
     inches,
     keep_labels_inside,
@@ -206,14 +206,13 @@ def _draw_maps(figure: Figure, data: xr.Dataset, top: float) -> None:
         axes = panels[row, column] = inches(figure, left, bottom, width, HEIGHT)
         draw_map(axes, G.isel(row=row), "bias", *conductance_scale(G))
         if row == 0:
-            axes.set_title(LABELS[str(G.name)])
+            axes.set_title(symbol(str(G.name)))
         if row == len(ROWS) - 1:
-            local = G.name in LOCAL
+            unit, words = conductance_unit(str(G.name))
             place = (left + 0.1, bottom - 0.36 - 0.13, width - 0.2, 0.07)
-            bar = colour_bar(figure, place, *conductance_scale(G), G, 1.0 if local else 1e-3)
+            bar = colour_bar(figure, place, *conductance_scale(G), G, unit)
             keep_labels_inside(bar.ax.xaxis)
-            unit = "$G$ [$e^2/h$]" if local else r"$G$ [$10^{-3}\,e^2/h$]"
-            write(figure, left + width / 2, bottom - 0.36 - 0.31, unit, ha="center")
+            write(figure, left + width / 2, bottom - 0.36 - 0.31, f"$G$ {words}", ha="center")
     outer_labels(panels, "B", "bias")
     label_rows(panels, ROWS, "bias")
 

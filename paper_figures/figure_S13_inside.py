@@ -17,12 +17,11 @@ from matplotlib.figure import Figure
 from command import Request, figure_script
 from disorder_landscape import Nanowire, local_density_of_states, modes, topological_visibility
 from disorder_landscape.model.disorder import positions
+from disorder_landscape.symbols import T_IV_COLOURS, T_IV_SYMBOL, axis_label
 from plotting import (
     FULL_WIDTH,
     INPUT,
-    LABELS,
     PREDICTION,
-    VISIBILITY_COLOURS,
     colour_bar,
     draw_map,
     inches,
@@ -87,10 +86,10 @@ def draw(data: xr.Dataset) -> Figure:
     highest = 1.05 * float(max(data["gamma_A"].max(), data["gamma_B"].max()))
     for i, letter in enumerate(letters(data)):
         above, *middle, below = panels[:, i]
-        draw_map(above, data["T_IV"][i, 0], "mu", norms[0], VISIBILITY_COLOURS)
+        draw_map(above, data["T_IV"][i, 0], "mu", norms[0], T_IV_COLOURS)
         above.plot(FIELD, MU, "kx", ms=5, mew=1.2)
         above.set_title(f"({letter})", loc="left")
-        above.set_xlabel(LABELS["B"], labelpad=1)
+        above.set_xlabel(axis_label("B"), labelpad=1)
         for row, axes in enumerate(middle):
             axes.pcolormesh(
                 x,
@@ -118,15 +117,15 @@ def draw(data: xr.Dataset) -> Figure:
         for axes in panels[:, i] if i else ():
             axes.tick_params(labelleft=False)
     panels[3, 0].legend(loc="upper center", bbox_to_anchor=(0.5, 0.86), frameon=False)
-    panels[0, 0].set_ylabel(LABELS["mu"])
+    panels[0, 0].set_ylabel(axis_label("mu"))
     for name, axes in zip(ROWS, panels[1:3, 0], strict=True):
         axes.set_ylabel(rf"$\it{{{name}}}$" + "\nenergy [µeV]", linespacing=1.1)
     panels[3, 0].set_ylabel(r"$|\gamma_{A,B}|^2$")
     at = FULL_WIDTH - RIGHT + 0.1
     bar = colour_bar(
-        figure, (at, bottoms[0], 0.09, HEIGHTS[0]), norms[0], VISIBILITY_COLOURS, data["T_IV"]
+        figure, (at, bottoms[0], 0.09, HEIGHTS[0]), norms[0], T_IV_COLOURS, data["T_IV"]
     )
-    bar.set_label(LABELS["T_IV"], labelpad=-2)
+    bar.set_label(T_IV_SYMBOL, labelpad=-2)
     tall = bottoms[1] + HEIGHTS[1] - bottoms[2]
     bar = colour_bar(figure, (at, bottoms[2], 0.09, tall), norms[1], "magma", data["LDOS"])
     bar.set_label("LDOS [1/meV per site]")

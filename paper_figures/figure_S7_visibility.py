@@ -15,10 +15,9 @@ from matplotlib.figure import Figure
 
 from command import Request, figure_script
 from disorder_landscape import Nanowire, topological_visibility
+from disorder_landscape.symbols import T_IV_COLOURS, T_IV_SYMBOL
 from plotting import (
     FULL_WIDTH,
-    LABELS,
-    VISIBILITY_COLOURS,
     colour_bar,
     draw_map,
     inches,
@@ -57,7 +56,7 @@ def draw(data: xr.Dataset) -> Figure:
     for (row, i), _ in np.ndenumerate(panels):
         bottom = height - TOP - PANEL_HEIGHT - row * (PANEL_HEIGHT + ROW_GAP)
         axes = inches(figure, LEFT + i * (width + GAP), bottom, width, PANEL_HEIGHT)
-        draw_map(axes, data["T_IV"][i, row], "mu", norm, VISIBILITY_COLOURS)
+        draw_map(axes, data["T_IV"][i, row], "mu", norm, T_IV_COLOURS)
         axes.axhline(CUT, color="r", ls=":", lw=1.5, clip_on=False)
         panels[row, i] = axes
     outer_labels(panels, "B", "mu")
@@ -68,8 +67,8 @@ def draw(data: xr.Dataset) -> Figure:
             alpha = rf"$\alpha$ = {float(data['alpha'][i, row]):.2f} meV nm" if varies else ""
             axes.set_title(alpha if row else f"({letter})  {alpha}", loc="left")
     place = (FULL_WIDTH - RIGHT + 0.1, BOTTOM, 0.09, 2 * PANEL_HEIGHT + ROW_GAP)
-    bar = colour_bar(figure, place, norm, VISIBILITY_COLOURS, data["T_IV"])
-    bar.set_label(LABELS["T_IV"], labelpad=-2)
+    bar = colour_bar(figure, place, norm, T_IV_COLOURS, data["T_IV"])
+    bar.set_label(T_IV_SYMBOL, labelpad=-2)
     return figure
 
 

@@ -21,13 +21,12 @@ from disorder_landscape import Nanowire, conductance, topological_visibility
 from disorder_landscape.model.parameters import B_MAX, MU_MAX, SITES, TEMPERATURE
 from disorder_landscape.model.quantities import CONDUCTANCES
 from disorder_landscape.observables.visibility import transition_field
+from disorder_landscape.symbols import T_IV_COLOURS, T_IV_SYMBOL, axis_label, symbol
 from plotting import (
     FULL_WIDTH,
-    LABELS,
-    LOCAL,
-    VISIBILITY_COLOURS,
     colour_bar,
     conductance_scale,
+    conductance_unit,
     draw_map,
     inches,
     outer_labels,
@@ -110,14 +109,14 @@ def _draw_visibility(figure: Figure, data: xr.Dataset, bottom: float) -> None:
     axes = inches(figure, LEFT, bottom, width, height)
     norm = Normalize(-1.0, 1.0)
     T_IV = data["T_IV"].rename(mu_a="mu", B_a="B")
-    draw_map(axes, T_IV, "mu", norm, VISIBILITY_COLOURS)
+    draw_map(axes, T_IV, "mu", norm, T_IV_COLOURS)
     label = r"$V_Z^2 = \mu^2 + \gamma^2$"
     (line,) = axes.plot(data["transition"], data["mu_a"], "k", dashes=(4, 2), label=label)
     line.set_path_effects([withStroke(linewidth=1.8, foreground="w")])
-    axes.set(xlabel=LABELS["B"], ylabel=LABELS["mu"], xlim=T_IV["B"][[0, -1]])
+    axes.set(xlabel=axis_label("B"), ylabel=axis_label("mu"), xlim=T_IV["B"][[0, -1]])
     place = (LEFT + width + 0.08, bottom, 0.09, height)
-    bar = colour_bar(figure, place, norm, VISIBILITY_COLOURS, T_IV)
-    bar.ax.set_title(LABELS["T_IV"], loc="left", pad=6)
+    bar = colour_bar(figure, place, norm, T_IV_COLOURS, T_IV)
+    bar.ax.set_title(T_IV_SYMBOL, loc="left", pad=6)
     right, top = LEFT + width + BAR + GAP, bottom + height
     figure.legend(
         handles=[line],
@@ -145,13 +144,12 @@ def _draw_conductances(figure: Figure, data: xr.Dataset, letter: str, bottom: fl
         axes = panels[0, column] = inches(figure, left, bottom, WIDTH, HEIGHT)
         scale = conductance_scale(G)  # the same for both ends: the wire is its own mirror image
         draw_map(axes, G, y, *scale)
-        axes.set_title(LABELS[name])
+        axes.set_title(symbol(name))
         if column % 2:
-            local = name in LOCAL
+            unit, words = conductance_unit(name)
             place = (left + WIDTH + 0.08, bottom, 0.09, HEIGHT)
-            bar = colour_bar(figure, place, *scale, G, 1.0 if local else 1e-3)
-            unit = "[$e^2/h$]" if local else r"[$10^{-3}\,e^2/h$]"
-            bar.ax.set_title(unit, loc="left", fontsize=8, pad=5)
+            bar = colour_bar(figure, place, *scale, G, unit)
+            bar.ax.set_title(words, loc="left", fontsize=8, pad=5)
     outer_labels(panels, "B", y)
 
 

@@ -20,27 +20,15 @@ from matplotlib.figure import Figure
 
 from disorder_landscape.studies.crossings import R2_AIMED_AT
 from disorder_landscape.studies.trainings_table import read_table
+from disorder_landscape.symbols import LOCAL, LOCAL_COLOURS, NONLOCAL_COLOURS, axis_label
 
 COLUMN, FULL_WIDTH = 3.404, 7.06
 """REVTeX's widths in inches."""
 
-LABELS = {
-    "G_LL": r"$G_\mathrm{LL}$",
-    "G_RR": r"$G_\mathrm{RR}$",
-    "G_LR": r"$G_\mathrm{LR}$",
-    "G_RL": r"$G_\mathrm{RL}$",
-    "mu": r"$\mu$ [meV]",
-    "B": r"$B$ [T]",
-    "bias": r"$V_\mathrm{bias}$ [meV]",
-    "T_IV": r"$T_\mathrm{IV}$",
-}
-"""How each quantity is printed."""
-LOCAL = ("G_LL", "G_RR")
 TICKS = {"B": (0.0, 0.4, 0.8), "mu": (0.0, 0.3, 0.6), "bias": (-0.04, 0.0, 0.04)}
 
 INPUT, PREDICTION = "#0072B2", "#D55E00"
 """Blue and vermilion of Okabe and Ito, told apart by colour-blind readers and in grey."""
-LOCAL_COLOURS, NONLOCAL_COLOURS, VISIBILITY_COLOURS = "viridis", "RdBu_r", "PuOr"
 CLIPPED_SHARE = 0.01
 """Share of the nonlocal conductances that a colour scale may cut off: sharp peaks hide the rest."""
 
@@ -107,6 +95,11 @@ def conductance_scale(G: xr.DataArray) -> tuple[Normalize, str]:
     return Normalize(-limit, limit), NONLOCAL_COLOURS
 
 
+def conductance_unit(name: str) -> tuple[float, str]:
+    """Return the unit in e²/h in which a conductance is labelled, and its words."""
+    return (1.0, "[$e^2/h$]") if name in LOCAL else (1e-3, r"[$10^{-3}\,e^2/h$]")
+
+
 def _rounded_up(value: float) -> float:
     """Return the next larger round number, for colour bars to end at."""
     if value <= 0:
@@ -161,14 +154,14 @@ def outer_labels(panels: np.ndarray, x: str, y: str) -> None:
     for (row, column), axes in np.ndenumerate(panels):
         bottom, left = row == panels.shape[0] - 1, column == 0
         axes.tick_params(labelbottom=bottom, labelleft=left)
-        axes.set_xlabel(LABELS[x] if bottom else "")
-        axes.set_ylabel(LABELS[y] if left else "")
+        axes.set_xlabel(axis_label(x) if bottom else "")
+        axes.set_ylabel(axis_label(y) if left else "")
 
 
 def label_rows(panels: np.ndarray, rows: Sequence[str], y: str) -> None:
     """Write what each row of panels shows beside the label of its upward axis."""
     for row, axes in zip(rows, panels[:, 0], strict=True):
-        axes.set_ylabel(rf"$\it{{{row}}}$" + "\n" + LABELS[y], linespacing=1.1)
+        axes.set_ylabel(rf"$\it{{{row}}}$" + "\n" + axis_label(y), linespacing=1.1)
 
 
 def colour_bar(

@@ -1,10 +1,9 @@
-"""Files and folders that are either whole or not there, JSON files, pictures."""
+"""Files and folders that are either whole or not there, and JSON files."""
 
 from __future__ import annotations
 
 import glob
 import hashlib
-import io
 import json
 import os
 import shutil
@@ -12,12 +11,9 @@ import socket
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from disorder_landscape.arguments import ArgumentError, require, shown
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 CHECKSUM = "checksum"
 """Key of a JSON file, about all others."""
@@ -52,21 +48,6 @@ def replacing(path: Path) -> Iterator[Path]:
 def _temporary_name(path: Path) -> str:
     """Return a name of this process' own, whoever else writes the same."""
     return f".writing-{_HOST}-{os.getpid()}-{path.name}"  # Keras looks at the suffix
-
-
-def write_picture(path: Path, figure: Figure, **options: Any) -> None:
-    """Write a figure in the format that the path's ending names; options are those of savefig."""
-    # In memory first: Matplotlib complains on its own where the disk is full.
-    content = picture(figure, path.suffix.removeprefix("."), **options)
-    with replacing(path) as temporary:
-        temporary.write_bytes(content)
-
-
-def picture(figure: Figure, kind: str, **options: Any) -> bytes:
-    """Return a figure in a format; options are those of savefig."""
-    content = io.BytesIO()
-    figure.savefig(content, format=kind, **options)
-    return content.getvalue()
 
 
 def unwritable(path: Path, reason: str | None) -> ArgumentError:

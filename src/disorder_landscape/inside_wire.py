@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from disorder_landscape.files import write_picture
 from disorder_landscape.model.disorder import positions
 from disorder_landscape.model.parameters import FloatArray, Nanowire
 from disorder_landscape.model.quantities import with_units
 from disorder_landscape.observables.density_of_states import local_density_of_states
 from disorder_landscape.observables.modes import modes
 from disorder_landscape.parts import needs
+from disorder_landscape.pictures import write_picture
 from disorder_landscape.simulation import stated
 
 

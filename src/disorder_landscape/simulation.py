@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from disorder_landscape.arguments import ArgumentError, numbers_of, require, whole_number_in
-from disorder_landscape.files import check_netcdf, check_writable, write_picture
+from disorder_landscape.files import check_netcdf
 from disorder_landscape.model.disorder import disorder_realization
 from disorder_landscape.model.parameters import (
     MOST_SITES,
@@ -22,6 +22,7 @@ from disorder_landscape.model.quantities import AXES, CONDUCTANCES, with_units
 from disorder_landscape.observables.conductance import Progress, conductance
 from disorder_landscape.observables.visibility import topological_visibility
 from disorder_landscape.parts import needs
+from disorder_landscape.pictures import check_picture, write_picture
 from disorder_landscape.potential_file import read_potential
 from disorder_landscape.symbols import colour_scale, symbol
 
@@ -157,19 +158,7 @@ def check_outputs(output: Path, plot: Path | None) -> None:
     """Raise an ArgumentError where a command could not write its netCDF file, or its picture."""
     check_netcdf("output", output)
     if plot is not None:
-        check_plot(plot)
-        check_writable("plot", plot)
-
-
-@needs("figures")
-def check_plot(path: Path, others: Sequence[str] = ()) -> None:
-    """Raise an ArgumentError unless the file's ending is one of matplotlib's, or of others."""
-    from matplotlib.backend_bases import FigureCanvasBase
-
-    formats = [*FigureCanvasBase.get_supported_filetypes(), *others]
-    formats.remove("pgf")  # it needs LaTeX
-    must = f"end in one of {', '.join(formats)}"
-    require(path.suffix.removeprefix(".") in formats, "plot", must, f"it is '{path}'")
+        check_picture("plot", plot)
 
 
 @needs("figures")
@@ -195,7 +184,7 @@ def plot_simulation(result: xr.Dataset, path: Path) -> None:
     for panel, name in zip(figure.subplots(1, 4), CONDUCTANCES, strict=True):
         G, unit = shown[name], "$e^2/h$"
         if y:
-            colours = colour_scale(name, float(abs(G).max()) or 1.0)
+            colours = colour_scale(name, float(abs(G).max()))
             G.plot.pcolormesh(x=x, y=y[0], ax=panel, cbar_kwargs={"label": unit}, **colours)
         else:
             G.plot.line("k.-", x=x, ax=panel)

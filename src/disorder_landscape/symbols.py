@@ -1,4 +1,4 @@
-"""How pictures name a conductance, and in which colours they show it."""
+"""How pictures name quantities, and in which colours they show them."""
 
 from __future__ import annotations
 
@@ -6,6 +6,17 @@ from typing import Any
 
 LOCAL = ("G_LL", "G_RR")
 """Conductances that are not negative, but for a little."""
+AXIS_SYMBOLS = {
+    "mu": (r"$\mu$", "meV"),
+    "B": ("$B$", "T"),
+    "bias": (r"$V_\mathrm{bias}$", "meV"),
+}
+"""Symbols of the axes, and their units."""
+T_IV_SYMBOL = r"$T_\mathrm{IV}$"
+LOCAL_COLOURS, NONLOCAL_COLOURS, T_IV_COLOURS = "viridis", "RdBu_r", "PuOr"
+"""Maps of colours. Where T_IV is negative, topological, it is orange."""
+TOPOLOGICAL_COLOURS = "Oranges"
+"""Of the probability that it is."""
 
 
 def symbol(name: str) -> str:
@@ -13,8 +24,14 @@ def symbol(name: str) -> str:
     return rf"$G_\mathrm{{{name[2:]}}}$"
 
 
+def axis_label(axis: str) -> str:
+    """Return the label of an axis with its unit; others than the measurement's have their name."""
+    return "{} [{}]".format(*AXIS_SYMBOLS[axis]) if axis in AXIS_SYMBOLS else axis
+
+
 def colour_scale(name: str, largest: float) -> dict[str, Any]:
     """Return the colours of a conductance, and their limits: from 0 on, or about it."""
+    largest = largest or 1.0  # of conductances that are all zero
     if name in LOCAL:
-        return {"cmap": "viridis", "vmin": 0, "vmax": largest}
-    return {"cmap": "RdBu_r", "vmin": -largest, "vmax": largest}
+        return {"cmap": LOCAL_COLOURS, "vmin": 0, "vmax": largest}
+    return {"cmap": NONLOCAL_COLOURS, "vmin": -largest, "vmax": largest}

@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from disorder_landscape.files import write_picture
+from disorder_landscape.pictures import write_picture
 
 BOUND = 2500
 """The ratio that was asked for, per energy and per set."""

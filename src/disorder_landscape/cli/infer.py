@@ -141,7 +141,7 @@ def _infer_alone(settings: Settings, task: Task) -> None:
     from disorder_landscape.inference.report import summary
     from disorder_landscape.learning.model import existing_folder, load_model_config
     from disorder_landscape.model.parameters import NOISE_FLOOR
-    from disorder_landscape.simulation import check_plot
+    from disorder_landscape.pictures import check_picture
 
     output, plot = task.output, task.plot
     check_netcdf("output", output)
@@ -149,8 +149,7 @@ def _infer_alone(settings: Settings, task: Task) -> None:
     same = output.resolve() == task.measurement.resolve()
     require(not same, "output", "be another file than the measurement", f"both are '{output}'")
     if plot is not None:
-        check_plot(plot, [PAGE])
-        check_writable("plot", plot)
+        check_picture("plot", plot, [PAGE])
     measured = read_dataset(task.measurement)
     errors = stated_noise(measured.attrs) if settings.noise is None else settings.noise
     observation = observation_of(measured, settings.prior_and_network()[0], errors)

@@ -10,10 +10,9 @@ from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.dataset.store import read_dataset
 from disorder_landscape.files import check_writable
 from disorder_landscape.inference.file import Task, alone_with, draw, infer_when_alone
+from disorder_landscape.inference.plot import PAGE
 from disorder_landscape.inference.settings import Settings, asked_for, asked_of
-
-PICTURES = (".html", ".pdf", ".png", ".svg")
-"""Endings that name a picture, not a folder of pictures."""
+from disorder_landscape.pictures import picture_formats
 
 
 def tasks_of_folder(
@@ -30,8 +29,10 @@ def tasks_of_folder(
     """
     names = [path.stem for path in measurements]
     twice = sorted({name for name in names if names.count(name) > 1})
-    is_file = plots is not None and (plots.is_file() or plots.suffix in PICTURES)
-    require(not is_file, "plot", "name a folder, as output does", f"it is '{plots}'")
+    if plots is not None:
+        ending = plots.suffix.removeprefix(".")
+        is_file = plots.is_file() or ending in (PAGE, *picture_formats())
+        require(not is_file, "plot", "name a folder, as output does", f"it is '{plots}'")
     must = "have names of their own, since their results have the same"
     require(not twice, "measurement", must, f"there are several of {', '.join(twice)}")
     hashes = settings.hashes()

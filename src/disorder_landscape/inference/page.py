@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
-from disorder_landscape.files import picture, replacing
+from disorder_landscape.files import replacing
 from disorder_landscape.inference.inferred import prior_of_result
 from disorder_landscape.inference.problem.parameters import BY_NAME
 from disorder_landscape.inference.report import (
@@ -22,6 +22,7 @@ from disorder_landscape.inference.report import (
     sentences_on,
 )
 from disorder_landscape.inference.verdict import CONVERGED
+from disorder_landscape.pictures import picture
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

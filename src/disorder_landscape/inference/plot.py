@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from disorder_landscape.files import write_picture
 from disorder_landscape.inference.inferred import prior_of_result
 from disorder_landscape.inference.page import DPI, write_page
 from disorder_landscape.inference.plot_maps import (
@@ -33,6 +32,7 @@ from disorder_landscape.inference.report import (
 from disorder_landscape.inference.verdict import CONVERGED
 from disorder_landscape.model.quantities import CONDUCTANCES
 from disorder_landscape.parts import needs
+from disorder_landscape.pictures import write_picture
 from disorder_landscape.symbols import symbol
 
 if TYPE_CHECKING:

@@ -13,16 +13,23 @@ from disorder_landscape.inference.problem.observation import errors_variance
 from disorder_landscape.inference.report import SURE, has_dissipation
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.model.quantities import CONDUCTANCES
-from disorder_landscape.symbols import colour_scale, symbol
+from disorder_landscape.symbols import (
+    AXIS_SYMBOLS,
+    NONLOCAL_COLOURS,
+    T_IV_COLOURS,
+    T_IV_SYMBOL,
+    TOPOLOGICAL_COLOURS,
+    axis_label,
+    colour_scale,
+    symbol,
+)
 
-RESIDUAL = {"cmap": "RdBu_r", "vmin": -4, "vmax": 4}
+RESIDUAL = {"cmap": NONLOCAL_COLOURS, "vmin": -4, "vmax": 4}
 """How residuals are shown, in standard deviations of all errors, the simulation's included."""
 NOT_MEASURED = "0.8"
 """Colour of what was not measured."""
 BELOW = -0.03
 """Where the data's points are beside a curve of P(topological)."""
-SYMBOLS = {"mu": (r"$\mu$", "meV"), "B": ("$B$", "T"), "bias": ("bias", "meV")}
-"""How axes are named, and their units; others have their own name."""
 
 
 class Shown(NamedTuple):
@@ -70,7 +77,7 @@ def _compared(result: xr.Dataset, measurement: Measurement, channel: int) -> dic
     colours = colour_scale(name, largest)
     beside = float(result["discrepancy"][channel]) if "discrepancy" in result else 0.0
     std = np.sqrt(errors_variance(result.attrs["noise"][channel]) + beside**2)
-    cut, unit = SYMBOLS.get(other, (other, ""))
+    cut, unit = AXIS_SYMBOLS.get(other, (other, ""))
     value = f"{cut} = {axes[other][at]:g} {unit}".strip()
     G_name, all_errors = symbol(name), r"$\sigma$ of all errors"
     gaps = " (grey: not)" if G.mask.any() else ""
@@ -107,14 +114,15 @@ def draw_maps(
     fine = {axis: result[f"map_{axis}"].to_numpy(), "B": result["map_B"].to_numpy()}
     data = {axis: measurement.mu, "B": measurement.B}
     most = gap.max() or 1e3 * float(result["gap"].max())
-    in_T, in_P = {"cmap": "RdBu", "vmin": -1, "vmax": 1}, {"cmap": "Purples", "vmin": 0, "vmax": 1}
+    in_T = {"cmap": T_IV_COLOURS, "vmin": -1, "vmax": 1}
+    in_P = {"cmap": TOPOLOGICAL_COLOURS, "vmin": 0, "vmax": 1}
     in_gap = {"cmap": "cividis", "vmin": 0, "vmax": most}
     P, exceed = result["P_topological"].to_numpy(), f"gap that {100 * SURE:.0f} % exceed"
     T_IV = result["T_IV"][0].to_numpy()
     closed = r" ($\Gamma = 0$)" if has_dissipation(result) else ""
     wire = "most probable wire" if "share" in result else "mean"  # in results of older versions
     shown = {
-        "T": Shown(fine, T_IV, rf"$T_\mathrm{{IV}}$ of the {wire}{closed}", "", in_T),
+        "T": Shown(fine, T_IV, f"{T_IV_SYMBOL} of the {wire}{closed}", "", in_T),
         "P": Shown(fine, P, "$P$(topological); dots: data", "", in_P),
         "gap": Shown(data, gap, exceed + closed, "µeV", in_gap),
     }
@@ -136,7 +144,7 @@ def _row_of_maps(figure: Any, panels: Mapping[str, Any], shown: Mapping[str, Sho
             how = {"shading": "nearest", "rasterized": True}
             panel.set_facecolor(NOT_MEASURED)
             image = panel.pcolormesh(x, y, one.values, **how, **one.options)
-            panel.set_ylabel("" if column else _label(upward))
+            panel.set_ylabel("" if column else axis_label(upward))
             figure.colorbar(image, ax=panel, label=one.unit, location="bottom", aspect=20)
         else:
             along = _axis_of_curve(one.grid)
@@ -145,17 +153,13 @@ def _row_of_maps(figure: Any, panels: Mapping[str, Any], shown: Mapping[str, Sho
             if one.options is not RESIDUAL:
                 low, high = one.options["vmin"], one.options["vmax"]
                 panel.set_ylim(low - 0.05 * (high - low), high + 0.05 * (high - low))
-        panel.set_xlabel(_label(along))
+        panel.set_xlabel(axis_label(along))
 
 
 def _axis_of_curve(grid: Mapping[str, FloatArray]) -> str:
     """Return which of two axes, one of which has one value, a curve is over."""
     upward, along = grid
     return along if grid[along].size > 1 else upward
-
-
-def _label(axis: str) -> str:
-    return "{} [{}]".format(*SYMBOLS[axis]) if axis in SYMBOLS else axis
 
 
 def sure_gap(result: xr.Dataset) -> FloatArray:

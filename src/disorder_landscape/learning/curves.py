@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from disorder_landscape.arguments import ArgumentError
-from disorder_landscape.files import replacing, write_picture
+from disorder_landscape.files import replacing
+from disorder_landscape.pictures import write_picture
 
 
 @dataclass(frozen=True)

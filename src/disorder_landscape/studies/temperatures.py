@@ -22,10 +22,10 @@ from pydantic import Field
 from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.config import DatasetConfig, Positive
 from disorder_landscape.dataset.realizations import realization
-from disorder_landscape.files import write_picture
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.observables.conductance import conductance
 from disorder_landscape.observables.visibility import topological_visibility
+from disorder_landscape.pictures import write_picture
 from disorder_landscape.studies.rows import Row, numbers
 from disorder_landscape.studies.study import Derived, Place, Plan
 
