@@ -328,4 +328,4 @@ def test_infer_writes_a_result_and_a_picture_without_the_network(monkeypatch, ca
     options = ["--model", shipped_model(FIVE), "-o", output, "--noise", "some"]
     code, _, said = landscape(monkeypatch, capsys, "infer", wire, *options)
     assert (code, said.count("\n")) == (2, 1)
-    assert "noise must be a number in e²/h" in said
+    assert "noise must be one number in e²/h" in said

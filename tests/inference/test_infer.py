@@ -16,14 +16,11 @@ from disorder_landscape.config import Config, DatasetConfig, TrainingConfig
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.files import read_json
 from disorder_landscape.inference.given import observation_of
-from disorder_landscape.inference.noise_hints import noise_hint, parse_noise, stated_noise_hint
+from disorder_landscape.inference.noise_hints import noise_hint, stated_noise_hint
 from disorder_landscape.inference.problem.distributions import Uniform
 from disorder_landscape.inference.problem.measurement import measurement_of, settings_of
-from disorder_landscape.inference.problem.observation import (
-    Observation,
-    noise_of_channels,
-    stated_noise,
-)
+from disorder_landscape.inference.problem.noise import noise_of_channels, parse_noise, stated_noise
+from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.problem.unknowns import unknowns_of
 from disorder_landscape.inference.report import summary
 from disorder_landscape.inference.search.few_unknowns import InversionSettings
@@ -258,7 +255,11 @@ def test_the_seed_decides(measured, inferred):
     ("change", "options", "message"),
     [
         (lambda G: G, {"noise": -0.1}, "noise must be a number from 0 to 1 e²/h, but it is -0.1"),
-        (lambda G: G, {"noise": {"G_LL": 0.1}}, "noise must be one number, or one for each of"),
+        (
+            lambda G: G,
+            {"noise": {"G_LL": 0.1}},
+            "noise must be one number in e²/h, or one for each of",
+        ),
         (lambda G: G, {"samples": 3}, "samples must be an even number"),
         (
             lambda G: G * 3.874e-5,
@@ -380,7 +381,9 @@ def test_noise_from_the_command_line():
     assert parse_noise("0.01") == 0.01
     assert parse_noise("0.01,0.02,0.003,0.004")["G_LR"] == 0.003
     for text in ("much", "0.1,0.2", ""):
-        with pytest.raises(ArgumentError, match="noise must be a number in e²/h, or one for each"):
+        with pytest.raises(
+            ArgumentError, match="noise must be one number in e²/h, or one for each"
+        ):
             parse_noise(text)
 
 
@@ -471,7 +474,7 @@ def test_a_prior_is_read_from_its_file(measured, tmp_path):
     assert by_file.unknowns.given.g == Uniform(23, 27)
     local = observation_of(measured[["G_LL", "G_RR"]], str(path), {"G_LL": 0.02, "G_RR": 0.01})
     assert local.noise[:2].tolist() == [0.02, 0.01]
-    with pytest.raises(ArgumentError, match="noise must be one number, or one for each"):
+    with pytest.raises(ArgumentError, match="noise must be one number in e²/h, or one for each"):
         observation_of(measured, path, {"G_LL": 0.02, "G_RR": 0.01})
 
 

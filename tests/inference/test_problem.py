@@ -5,7 +5,8 @@ import pytest
 from scipy.stats import multivariate_normal
 
 from disorder_landscape.inference.problem.gaussian import log_density
-from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
+from disorder_landscape.inference.problem.noise import noise_of_channels
+from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.problem.unknowns import unknowns_of
 from disorder_landscape.model.disorder import disorder_realization
 from linear_data import CONFIG, SIZE, UNKNOWNS

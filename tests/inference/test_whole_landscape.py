@@ -10,7 +10,8 @@ from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.invert import invert
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.measurement import Measurement
-from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
+from disorder_landscape.inference.problem.noise import noise_of_channels
+from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.search.whole_landscape import (

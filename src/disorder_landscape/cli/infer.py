@@ -101,7 +101,7 @@ def infer(
     """
     from disorder_landscape.inference.file import Task
     from disorder_landscape.inference.folder import tasks_of_folder
-    from disorder_landscape.inference.noise_hints import parse_noise
+    from disorder_landscape.inference.problem.noise import parse_noise
     from disorder_landscape.inference.settings import Settings
 
     check_options_of(executor, site, dry_run, scheduler)
@@ -136,7 +136,7 @@ def _infer_alone(settings: Settings, task: Task) -> None:
     from disorder_landscape.inference.given import observation_of
     from disorder_landscape.inference.noise_hints import noise_hint
     from disorder_landscape.inference.plot import PAGE
-    from disorder_landscape.inference.problem.observation import stated_noise
+    from disorder_landscape.inference.problem.noise import stated_noise
     from disorder_landscape.inference.progress import announce_inference, inference_progress
     from disorder_landscape.inference.report import summary
     from disorder_landscape.learning.model import existing_folder, load_model_config

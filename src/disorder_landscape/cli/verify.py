@@ -52,7 +52,7 @@ def verify(
 
     from disorder_landscape.dataset.store import read_dataset, write_dataset
     from disorder_landscape.files import check_netcdf
-    from disorder_landscape.inference.noise_hints import parse_noise
+    from disorder_landscape.inference.problem.noise import parse_noise
     from disorder_landscape.inference.verification.comparison import OF_CHANNELS, table
     from disorder_landscape.inference.verify import verify as compare
     from disorder_landscape.learning.model import load_model_config

@@ -15,11 +15,8 @@ from disorder_landscape.inference.problem.measurement import (
     measurement_of,
     settings_of,
 )
-from disorder_landscape.inference.problem.observation import (
-    Observation,
-    noise_of_channels,
-    stated_noise,
-)
+from disorder_landscape.inference.problem.noise import noise_of_channels, stated_noise
+from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.learning.model import TrainedModel, existing_folder, load_model_config

@@ -1,15 +1,13 @@
-"""The noise that is stated: read from text, and hints at one that is other than that."""
+"""Hints at noise that is other than what is stated, or than what a network was trained with."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from disorder_landscape.arguments import numbers_of
 from disorder_landscape.config import TrainingConfig
 from disorder_landscape.inference.optimum import TOLERATED
-from disorder_landscape.inference.problem.observation import noise_of_channels, one_or_each
+from disorder_landscape.inference.problem.noise import noise_of_channels
 from disorder_landscape.model.parameters import NOISE_FLOOR, FloatArray
-from disorder_landscape.model.quantities import CONDUCTANCES
 
 UNTRAINED = 2.0
 """A network guesses badly if errors are more than so many times those of its training."""
@@ -19,19 +17,6 @@ OTHERWISE = 1.25
 """… and that noise is not the stated one if they are more or less than it by this factor. …"""
 FAR_LESS = 0.5
 """… If all misfits are less than this share of it, it is not either, whatever they are."""
-
-
-def parse_noise(text: str) -> float | dict[str, float]:
-    """Return the noise that "0.01" or "0.01,0.01,0.001,0.001" describes.
-
-    Raises
-    ------
-    ArgumentError
-        If the text is something else.
-    """
-    must = f"be a number in e²/h, or one for each of {', '.join(CONDUCTANCES)}"
-    values = numbers_of("noise", text, (1, len(CONDUCTANCES)), must)
-    return one_or_each(values)
 
 
 def noise_hint(training: TrainingConfig, noise: float | dict[str, float]) -> str:

@@ -9,11 +9,7 @@ import numpy as np
 from scipy.special import softmax
 
 from disorder_landscape.inference.problem.gaussian import Gaussian
-from disorder_landscape.inference.problem.observation import (
-    Observation,
-    objective,
-    squared_misfits,
-)
+from disorder_landscape.inference.problem.observation import Observation, objective, squared_misfits
 from disorder_landscape.inference.problem.straightened import Straightened
 from disorder_landscape.model.parameters import FloatArray
 

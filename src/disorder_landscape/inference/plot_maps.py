@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from disorder_landscape.inference.problem.measurement import Measurement
-from disorder_landscape.inference.problem.observation import errors_variance
+from disorder_landscape.inference.problem.noise import errors_variance
 from disorder_landscape.inference.report import SURE, has_dissipation
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.model.quantities import CONDUCTANCES

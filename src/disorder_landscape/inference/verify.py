@@ -27,7 +27,7 @@ from disorder_landscape.arguments import (
     whole_number_in,
 )
 from disorder_landscape.config import DatasetConfig
-from disorder_landscape.inference.problem.observation import noise_of_channels, stated_noise
+from disorder_landscape.inference.problem.noise import noise_of_channels, stated_noise
 from disorder_landscape.inference.verification.compared import compared
 from disorder_landscape.inference.verification.comparison import SIGNIFICANCE, comparison
 from disorder_landscape.inference.verification.mismatch import SHIFTS, mean_squares, simulations

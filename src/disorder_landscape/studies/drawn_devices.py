@@ -14,7 +14,8 @@ import numpy as np
 
 from disorder_landscape.config import Positive
 from disorder_landscape.inference.problem.measurement import Measurement
-from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
+from disorder_landscape.inference.problem.noise import noise_of_channels
+from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.problem.unknowns import Device, Unknowns
 from disorder_landscape.model.disorder import mean_reduction, smooth_noise
 from disorder_landscape.model.parameters import B_MAX, BIAS, TEMPERATURE, FloatArray, Nanowire

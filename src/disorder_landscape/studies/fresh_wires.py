@@ -26,11 +26,8 @@ from disorder_landscape.inference.invert import invert
 from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.measurement import Measurement, empty_measurement
-from disorder_landscape.inference.problem.observation import (
-    Observation,
-    noise_of_channels,
-    objective,
-)
+from disorder_landscape.inference.problem.noise import noise_of_channels
+from disorder_landscape.inference.problem.observation import Observation, objective
 from disorder_landscape.inference.problem.unknowns import unknowns_of
 from disorder_landscape.inference.result import evidence
 from disorder_landscape.inference.verdict import verdict

@@ -19,7 +19,8 @@ from pydantic import Field
 from disorder_landscape.config import DatasetConfig, Positive
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.inference.problem.measurement import empty_measurement
-from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
+from disorder_landscape.inference.problem.noise import noise_of_channels
+from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.problem.unknowns import Unknowns, unknowns_of
 from disorder_landscape.inference.search.gauss_newton import linearise
 from disorder_landscape.model.parameters import TEMPERATURE, FloatArray

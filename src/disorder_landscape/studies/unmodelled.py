@@ -22,7 +22,8 @@ from disorder_landscape.inference.problem.measurement import (
     empty_measurement,
     simulated,
 )
-from disorder_landscape.inference.problem.observation import Observation, noise_of_channels
+from disorder_landscape.inference.problem.noise import noise_of_channels
+from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.problem.series_resistance import in_series
 from disorder_landscape.inference.problem.unknowns import Unknowns, unknowns_of
 from disorder_landscape.inference.verification.predictive import predictive_p

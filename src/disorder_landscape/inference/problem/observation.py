@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from disorder_landscape.arguments import number_in, reals, require
 from disorder_landscape.inference.problem.measurement import Measurement, simulated
+from disorder_landscape.inference.problem.noise import SOLVER_ERROR, errors_variance
 from disorder_landscape.inference.problem.unknowns import Unknowns, share_settings
-from disorder_landscape.model.parameters import NOISE_FLOOR, FloatArray
+from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.model.quantities import CONDUCTANCES
-from disorder_landscape.solver import compiled, gradients
+from disorder_landscape.solver import gradients
 
-SOLVER_ERROR = compiled.core.TOLERANCE
-"""In e²/h: the error of the simulation. Smaller noise makes no difference."""
 TRUSTED = 1e-2
 """Derivatives with a larger estimated error, as a share of the largest of their (μ, B), are not
 used: one in a hundred at 50 and at 300 mK. (With all of them one answer of ten at 0.001 e²/h had
@@ -204,11 +202,6 @@ def _drawn(
     ]
 
 
-def errors_variance(noise: ArrayLike) -> FloatArray:
-    """Return the variance in (e²/h)² of noise, in e²/h, and of the solver's own error together."""
-    return np.asarray(noise) ** 2 + SOLVER_ERROR**2
-
-
 def overall_misfit(observation: Observation, y: FloatArray) -> float:
     """Return the root-mean-square misfit of simulated data (datum,), all channels, in e²/h."""
     return float(np.sqrt(((observation.data - y) ** 2).mean()))
@@ -230,38 +223,3 @@ def objective(observation: Observation, X: FloatArray, Y: FloatArray) -> FloatAr
     """
     likelihood = squared_misfits(observation, Y).sum(axis=-1)
     return np.asarray(likelihood + observation.unknowns.prior.squared_distance(X))
-
-
-def stated_noise(attrs: Mapping[Any, Any], usual: float = NOISE_FLOOR) -> float | dict[str, float]:
-    """Return the noise that a measurement states: one number, one of each channel, or the usual."""
-    must = f"be one number in e²/h, or one for each of {', '.join(CONDUCTANCES)}"
-    noise = np.atleast_1d(reals("noise", attrs.get("noise", usual), must)).tolist()
-    one_or_all = len(noise) in (1, len(CONDUCTANCES))
-    require(one_or_all, "noise", must, f"the measurement states {len(noise)}")
-    return one_or_each(noise)
-
-
-def one_or_each(noise: list[float]) -> float | dict[str, float]:
-    """Return one number, or one by the name of each channel, from a list of them."""
-    return noise[0] if len(noise) == 1 else dict(zip(CONDUCTANCES, noise, strict=True))
-
-
-def noise_of_channels(
-    noise: float | Mapping[str, float], measured: Container[Any] = CONDUCTANCES
-) -> FloatArray:
-    """Return the standard deviation of each channel's errors in e²/h, shape (channel,).
-
-    Where each has its own, those that were not measured need none.
-
-    Raises
-    ------
-    ArgumentError
-        If it is negative or no number, or not given for each channel.
-    """
-    if not isinstance(noise, Mapping):
-        return np.full(len(CONDUCTANCES), number_in("noise", noise, 0.0, 1.0, "e²/h"))
-    must = f"be one number, or one for each of {', '.join(CONDUCTANCES)}"
-    but = f"it is for {', '.join(map(str, noise))}"
-    noise = {name: 0.0 for name in CONDUCTANCES if name not in measured} | dict(noise)
-    require(set(noise) == set(CONDUCTANCES), "noise", must, but)
-    return np.array([number_in("noise", noise[name], 0.0, 1.0, "e²/h") for name in CONDUCTANCES])

@@ -9,7 +9,7 @@ import numpy as np
 
 from disorder_landscape.inference.inferred import Sample
 from disorder_landscape.inference.problem.measurement import Measurement, simulated
-from disorder_landscape.inference.problem.observation import errors_variance
+from disorder_landscape.inference.problem.noise import errors_variance
 from disorder_landscape.model.parameters import FloatArray
 
 
