@@ -15,12 +15,11 @@ from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.chain import FIVE, Run, evaluation, preset_run
 from disorder_landscape.config import Config
 from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
+from disorder_landscape.model.quantities import DRAWN
 from disorder_landscape.pictures import write_picture
 from plotting import paper_style
 
-EVALUATED = [
-    f"{name}{end}" for name in ("components", "alpha", "potential") for end in ("", "_predicted")
-]
+EVALUATED = [f"{name}{end}" for name in DRAWN for end in ("", "_predicted")]
 """What an evaluation file must hold."""
 
 

@@ -21,9 +21,9 @@ from tqdm import tqdm
 from command import Request, figure_script
 from disorder_landscape import Nanowire, conductance, verify
 from disorder_landscape.config import Config
+from disorder_landscape.inference.defaults import WIDEST_SHIFT
 from disorder_landscape.inference.verification.comparison import scores
 from disorder_landscape.inference.verification.controls import control_wires
-from disorder_landscape.model.disorder import MEAN_STD
 from disorder_landscape.model.quantities import CONDUCTANCES
 from disorder_landscape.symbols import symbol
 from plotting import (
@@ -93,7 +93,7 @@ def data(request: Request) -> xr.Dataset:
 
 def _shifts(count: int) -> np.ndarray:
     """Return means of V in meV to try, from minus to plus three standard deviations; one is 0."""
-    return 3 * MEAN_STD * (np.arange(count) - (count - 1) / 2) / max((count - 1) / 2, 1)
+    return WIDEST_SHIFT * (np.arange(count) - (count - 1) / 2) / max((count - 1) / 2, 1)
 
 
 def _wire(table: xr.Dataset, i: int, row: int) -> Nanowire:

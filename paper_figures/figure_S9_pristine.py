@@ -14,10 +14,10 @@ import xarray as xr
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
-from tqdm import tqdm
 
 from command import Request, figure_script
 from disorder_landscape import Nanowire, conductance, topological_visibility
+from disorder_landscape.estimates import settings_bar
 from disorder_landscape.model.parameters import B_MAX, MU_MAX, SITES, TEMPERATURE
 from disorder_landscape.model.quantities import CONDUCTANCES
 from disorder_landscape.observables.visibility import transition_field
@@ -64,12 +64,7 @@ def data(request: Request) -> xr.Dataset:
     fine_B = np.linspace(0.0, B_MAX, figures.visibility_refinement * figures.pristine_B_points)
     bias = np.linspace(-figures.bias_max, figures.bias_max, figures.bias_points)
 
-    with tqdm(unit=" settings", delay=2, desc="simulate") as bar:
-
-        def progress(done: int, in_all: int) -> None:
-            bar.total = in_all
-            bar.update(done)
-
+    with settings_bar("simulate") as progress:
         G = conductance(wire, mu, B, 0.0, progress=progress)
     T_IV = topological_visibility(wire, fine_mu, fine_B).sel(lead="L", drop=True)
     transition = xr.DataArray(

@@ -11,6 +11,7 @@ from tqdm import tqdm
 from disorder_landscape import Nanowire
 from disorder_landscape.arguments import require
 from disorder_landscape.config import Config
+from disorder_landscape.model.quantities import DRAWN
 
 ROWS = ("input", "prediction")
 """The wire itself, and the wire with the disorder and α that the network predicts."""
@@ -70,9 +71,8 @@ def in_rows(chosen: xr.Dataset) -> xr.Dataset:
         components (realization, row, component) and potential (realization, row, site) in meV,
         alpha (realization, row) in meV nm.
     """
-    names = ("components", "alpha", "potential")
     rows = [
-        xr.Dataset({name: chosen[name + end].variable for name in names}) for end in SUFFIX.values()
+        xr.Dataset({name: chosen[name + end].variable for name in DRAWN}) for end in SUFFIX.values()
     ]
     table = xr.concat(rows, "row", combine_attrs="override").transpose("realization", "row", ...)
     coords = {name: chosen[name] for name in ("realization", "component", "site")}

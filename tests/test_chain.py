@@ -97,8 +97,7 @@ def test_a_finished_chain_is_left_alone(run, build):
 
 
 def test_a_network_of_another_configuration_is_not_scored(run):
-    epochs = run.config.training.epochs + 1
-    training = run.config.training.model_copy(update={"epochs": epochs})
+    training = run.config.training.model_copy(update={"batch_size": 7})
     other = replace(run, config=run.config.model_copy(update={"training": training}))
     for scored in (chain.evaluate, chain.evaluation):
         with pytest.raises(ArgumentError, match="config must be that of the network"):

@@ -28,7 +28,7 @@ from disorder_landscape.executors.local import LocalProcesses
 from disorder_landscape.learning.model_files import NETWORK, SCALER, is_trained
 from disorder_landscape.locks import kept_from_others
 from disorder_landscape.model.parameters import NOISE_FLOOR
-from disorder_landscape.model.quantities import with_units
+from disorder_landscape.model.quantities import DRAWN, with_units
 from disorder_landscape.solver import compiled
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -220,9 +220,8 @@ def evaluate(run: Run) -> xr.Dataset:
     labels = model.labels
     true, guess = (label_array(one, labels.names) for one in (test, predicted))
     scores = score(true, guess, labels, run.config.dataset.sites)
-    names = ("components", "alpha", "potential")
     evaluation = xr.merge(
-        [test[list(names)], predicted[list(names)].rename({n: f"{n}_predicted" for n in names})],
+        [test[list(DRAWN)], predicted[list(DRAWN)].rename({n: f"{n}_predicted" for n in DRAWN})],
         combine_attrs="drop",
     )
     evaluation = with_units(evaluation)

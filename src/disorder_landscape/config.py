@@ -25,6 +25,7 @@ from disorder_landscape.model.parameters import (
     ALPHA_RANGE,
     B_MAX,
     BIAS,
+    COMPONENTS,
     MOST_SITES,
     MU_MAX,
     PARAMETER_RANGES,
@@ -63,7 +64,7 @@ class DatasetConfig(_Section):
 
     realizations: Positive
     """How many wires."""
-    components: Positive = 5
+    components: Positive = COMPONENTS
     """N_dis, the disorder components c₁ … c_n that are kept."""
     alpha_range: tuple[float, float] = ALPHA_RANGE
     """α is uniform in this range in meV nm; two equal numbers fix it, and it is no label then."""

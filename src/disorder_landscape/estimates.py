@@ -1,10 +1,13 @@
-"""How long a command will take on this machine, said before it begins."""
+"""How long a command will take on this machine, and how far it is."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from itertools import count
+
+from tqdm import tqdm
 
 SECOND = 1.0
 """So long a pace is measured, in seconds, …"""
@@ -49,6 +52,21 @@ def announce_repeated(
         pace.step()
         if pace.is_known:
             return
+
+
+@contextmanager
+def settings_bar(what: str) -> Iterator[Callable[[int, int], None]]:
+    """Show how many of all settings are simulated, if that takes more than a second.
+
+    What is yielded is to be called with the number of those just done, and that of all.
+    """
+    with tqdm(unit=" settings", delay=1, desc=what) as bar:
+
+        def progress(done: int, in_all: int) -> None:
+            bar.total = in_all
+            bar.update(done)
+
+        yield progress
 
 
 class Pace:

@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from disorder_landscape.arguments import ArgumentError, numbers_of, require, whole_number_in
-from disorder_landscape.files import check_netcdf
+from disorder_landscape.arguments import require, whole_number_in
 from disorder_landscape.model.disorder import disorder_realization
 from disorder_landscape.model.parameters import (
+    COMPONENTS,
     MOST_SITES,
     SITES,
+    STATED,
     FloatArray,
     Nanowire,
 )
@@ -22,43 +23,9 @@ from disorder_landscape.model.quantities import AXES, CONDUCTANCES, with_units
 from disorder_landscape.observables.conductance import Progress, conductance
 from disorder_landscape.observables.visibility import topological_visibility
 from disorder_landscape.parts import needs
-from disorder_landscape.pictures import check_picture, write_picture
+from disorder_landscape.pictures import write_picture
 from disorder_landscape.potential_file import read_potential
 from disorder_landscape.symbols import colour_scale, symbol
-
-COMPONENTS = 5
-"""Of the disorder that a command draws, unless it says otherwise: the paper's smaller number."""
-
-
-def parse_grid(name: str, text: str) -> FloatArray:
-    """Return the grid that "0.3", "0,0.1,0.4" or "start:stop:points" describes.
-
-    Raises
-    ------
-    ArgumentError
-        If the text is something else.
-    """
-    try:
-        if ":" in text:
-            start, stop, points = text.split(":")
-            with np.errstate(over="ignore", invalid="ignore"):
-                return np.linspace(float(start), float(stop), int(points))
-        return np.array([float(part) for part in text.split(",")])
-    except ValueError:
-        must = "be a number, a list like 0,0.1 or a range like start:stop:points"
-        raise ArgumentError(name, must, f"it is '{text}'") from None
-
-
-def parse_barrier(text: str) -> tuple[float, float]:
-    """Return the left and the right barrier that "15" or "15,12" describes.
-
-    Raises
-    ------
-    ArgumentError
-        If the text is something else.
-    """
-    values = numbers_of("barrier", text, (1, 2), "be a number in meV, or two like 15,12")
-    return values[0], values[-1]
 
 
 def chosen_wire(
@@ -149,16 +116,8 @@ def simulate_wire(
 
 def stated(wire: Nanowire) -> dict[str, Any]:
     """Return the parameters that a file states of the wire in it."""
-    names = ("alpha", "mass", "lattice", "g", "gamma", "delta0", "critical_field")
-    of_wire = {name: getattr(wire, name) for name in (*names, "barrier", "lead_mu", "dissipation")}
+    of_wire = {name: getattr(wire, name) for name in (*STATED, "barrier")}
     return of_wire | {"parent_dissipation": wire.dissipation_of_parent}
-
-
-def check_outputs(output: Path, plot: Path | None) -> None:
-    """Raise an ArgumentError where a command could not write its netCDF file, or its picture."""
-    check_netcdf("output", output)
-    if plot is not None:
-        check_picture("plot", plot)
 
 
 @needs("figures")

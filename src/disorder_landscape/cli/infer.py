@@ -22,8 +22,16 @@ from disorder_landscape.cli.executors import (
     executor_of,
     on_slurm,
 )
-from disorder_landscape.cli.options import ShareOfTasks, Workers, made_here, resumable
+from disorder_landscape.cli.options import (
+    ShareOfTasks,
+    Workers,
+    check_outputs,
+    made_here,
+    resumable,
+    wrote,
+)
 from disorder_landscape.executors.executor import Executor, parse_share
+from disorder_landscape.inference.defaults import SAMPLES
 from disorder_landscape.parts import needs
 
 if TYPE_CHECKING:
@@ -63,7 +71,7 @@ def infer(
     samples: Annotated[
         int,
         typer.Option(min=2, help="Samples of the posterior that are written, an even number."),
-    ] = 64,
+    ] = SAMPLES,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the ensembles.")] = 0,
     discrepancy: Annotated[
         bool,
@@ -131,7 +139,7 @@ def infer(
 def _infer_alone(settings: Settings, task: Task) -> None:
     """Find what explains one measurement, on all cores, and print what was found."""
     from disorder_landscape.dataset.store import read_dataset
-    from disorder_landscape.files import check_netcdf, check_writable
+    from disorder_landscape.files import check_writable
     from disorder_landscape.inference.file import infer_file
     from disorder_landscape.inference.given import observation_of
     from disorder_landscape.inference.noise_hints import noise_hint
@@ -144,10 +152,8 @@ def _infer_alone(settings: Settings, task: Task) -> None:
     from disorder_landscape.pictures import check_picture
 
     output, plot = task.output, task.plot
-    check_netcdf("output", output)
+    check_outputs(output, None, [task.measurement])
     check_writable("output", task.unfinished)
-    same = output.resolve() == task.measurement.resolve()
-    require(not same, "output", "be another file than the measurement", f"both are '{output}'")
     if plot is not None:
         check_picture("plot", plot, [PAGE])
     measured = read_dataset(task.measurement)
@@ -163,7 +169,7 @@ def _infer_alone(settings: Settings, task: Task) -> None:
     with resumable(), inference_progress() as progress:
         result = infer_file(settings, task, progress)
     print("\n".join(summary(result)))
-    print(f"wrote {output}" + (f" and {plot}" if plot else ""))
+    print(wrote(output, plot))
 
 
 def _infer_each(settings: Settings, tasks: Sequence[Task], executor: Executor) -> None:

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from disorder_landscape.arguments import number_in
-from disorder_landscape.cli.options import made_here
+from disorder_landscape.cli.options import check_outputs, made_here, wrote
+from disorder_landscape.cli.texts import parse_barrier, parse_grid, radians
 from disorder_landscape.cli.wire_options import (
+    USUAL_BARRIER,
     Alpha,
     Angle,
     Barrier,
@@ -44,7 +44,7 @@ def modes(
     gamma: Gamma = Nanowire.gamma,
     delta0: Delta0 = Nanowire.delta0,
     critical_field: CriticalField = Nanowire.critical_field,
-    barrier: Barrier = "15",
+    barrier: Barrier = USUAL_BARRIER,
     lead_mu: LeadMu = Nanowire.lead_mu,
     mu: Annotated[float, typer.Option(help="Chemical potential in meV.")] = 0.0,
     B: Annotated[float, typer.Option("--B", help="Magnetic field in T.")] = 0.6,
@@ -68,7 +68,7 @@ def modes(
     from disorder_landscape import inside_wire, simulation
     from disorder_landscape.dataset.store import write_dataset
 
-    simulation.check_outputs(output, plot)
+    check_outputs(output, plot)
     wire = simulation.chosen_wire(
         potential,
         seed,
@@ -81,12 +81,11 @@ def modes(
         gamma=gamma,
         delta0=delta0,
         critical_field=critical_field,
-        barrier=simulation.parse_barrier(barrier),
+        barrier=parse_barrier(barrier),
         lead_mu=lead_mu,
     )
-    angle = math.radians(number_in("theta", theta, -360.0, 360.0, "degrees"))
-    energies = simulation.parse_grid("energy", energy)
-    result = inside_wire.look_inside(wire, mu, B, count, energies, temperature, angle)
+    energies = parse_grid("energy", energy)
+    result = inside_wire.look_inside(wire, mu, B, count, energies, temperature, radians(theta))
     write_dataset(result, output, made_here())
     if plot is not None:
         inside_wire.plot_inside(result, plot)
@@ -95,4 +94,4 @@ def modes(
         levels += ", …"
     overlap = float(result.overlap)
     print(f"levels in µeV: {levels}; overlap of the Majorana components {overlap:.2g}")
-    print(f"wrote {output}" + (f" and {plot}" if plot else ""))
+    print(wrote(output, plot))

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
 import typer
+
+from disorder_landscape.arguments import require
 
 ConfigFile = Annotated[Path, typer.Option("--config", "-c", help="TOML file of the run.")]
 Build = Annotated[Path, typer.Option(help="Folder of the results, one subfolder per run.")]
@@ -34,3 +36,23 @@ def made_here() -> dict[str, str]:
 
     command = " ".join(["landscape", *sys.argv[1:]])
     return provenance(command.encode("utf-8", "backslashreplace").decode())  # names may be bytes
+
+
+def check_outputs(output: Path, plot: Path | None, read: Sequence[Path] = ()) -> None:
+    """Raise an ArgumentError where a command could not write its netCDF file, or its picture.
+
+    Or where its file is one of those that it reads.
+    """
+    from disorder_landscape.files import check_netcdf
+    from disorder_landscape.pictures import check_picture
+
+    check_netcdf("output", output)
+    same = output.resolve() in {path.resolve() for path in read}
+    require(not same, "output", "be another file than those that are read", f"it is '{output}'")
+    if plot is not None:
+        check_picture("plot", plot)
+
+
+def wrote(output: Path, plot: Path | None = None) -> str:
+    """Return the words for what a command has written."""
+    return f"wrote {output}" + (f" and {plot}" if plot else "")

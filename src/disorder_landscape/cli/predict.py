@@ -7,8 +7,7 @@ from typing import Annotated
 
 import typer
 
-from disorder_landscape.arguments import require
-from disorder_landscape.cli.options import made_here
+from disorder_landscape.cli.options import check_outputs, made_here, wrote
 from disorder_landscape.parts import needs
 
 
@@ -26,13 +25,10 @@ def predict(
     Example: landscape predict wire.nc --model data_small/models/five_components_and_alpha -o Y.nc
     """
     from disorder_landscape.dataset.store import read_dataset, write_dataset
-    from disorder_landscape.files import check_netcdf
     from disorder_landscape.learning.prediction import predict as predict_labels
     from disorder_landscape.model.quantities import CONDUCTANCES
 
-    check_netcdf("output", output)
-    same = output.resolve() == measurement.resolve()
-    require(not same, "output", "be another file than the measurement", f"both are '{output}'")
+    check_outputs(output, None, [measurement])
     Y = predict_labels(model, read_dataset(measurement, CONDUCTANCES)[list(CONDUCTANCES)])
     write_dataset(Y, output, made_here())
-    print(f"wrote {output}")
+    print(wrote(output))

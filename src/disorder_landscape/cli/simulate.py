@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from disorder_landscape.arguments import number_in
-from disorder_landscape.cli.options import made_here
+from disorder_landscape.cli.options import check_outputs, made_here, wrote
+from disorder_landscape.cli.texts import parse_barrier, parse_grid, radians
 from disorder_landscape.cli.wire_options import (
+    USUAL_BARRIER,
     Alpha,
     Angle,
     Barrier,
@@ -28,7 +28,7 @@ from disorder_landscape.cli.wire_options import (
     PotentialSeed,
     Sites,
 )
-from disorder_landscape.model.parameters import Nanowire
+from disorder_landscape.model.parameters import TEMPERATURE, Nanowire
 
 
 def simulate(
@@ -45,9 +45,11 @@ def simulate(
     critical_field: CriticalField = Nanowire.critical_field,
     dissipation: Dissipation = Nanowire.dissipation,
     parent_dissipation: ParentDissipation = None,
-    barrier: Barrier = "15",
+    barrier: Barrier = USUAL_BARRIER,
     lead_mu: LeadMu = Nanowire.lead_mu,
-    temperature: Annotated[float, typer.Option(help="In K; 0 is the bare conductance.")] = 0.05,
+    temperature: Annotated[
+        float, typer.Option(help="In K; 0 is the bare conductance.")
+    ] = TEMPERATURE,
     mu: Annotated[str, typer.Option(help="Chemical potentials in meV.")] = "0",
     B: Annotated[str, typer.Option("--B", help="Magnetic fields in T.")] = "0:0.8:81",
     theta: Angle = 0.0,
@@ -63,12 +65,11 @@ def simulate(
     Example: landscape simulate --seed 1 --mu 0 --B 0:0.8:81 --bias -0.04:0.04:81 -o wire.nc
     --plot wire.png
     """
-    from tqdm import tqdm
-
     from disorder_landscape import simulation
     from disorder_landscape.dataset.store import write_dataset
+    from disorder_landscape.estimates import settings_bar
 
-    simulation.check_outputs(output, plot)
+    check_outputs(output, plot)
     wire = simulation.chosen_wire(
         potential,
         seed,
@@ -83,22 +84,15 @@ def simulate(
         critical_field=critical_field,
         dissipation=dissipation,
         parent_dissipation=parent_dissipation,
-        barrier=simulation.parse_barrier(barrier),
+        barrier=parse_barrier(barrier),
         lead_mu=lead_mu,
     )
-    angle = math.radians(number_in("theta", theta, -360.0, 360.0, "degrees"))
-    grids = {
-        name: simulation.parse_grid(name, text)
-        for name, text in {"mu": mu, "B": B, "bias": bias}.items()
-    }
-    with tqdm(unit=" settings", delay=1, desc="simulate") as bar:
-
-        def progress(done: int, in_all: int) -> None:
-            bar.total = in_all
-            bar.update(done)
-
+    texts = {"mu": mu, "B": B, "bias": bias}
+    grids = {name: parse_grid(name, text) for name, text in texts.items()}
+    angle = radians(theta)
+    with settings_bar("simulate") as progress:
         result = simulation.simulate_wire(wire, grids, temperature, solver, angle, progress)
     write_dataset(result, output, made_here())
     if plot is not None:
         simulation.plot_simulation(result, plot)
-    print(f"{wire.sites} sites; wrote {output}" + (f" and {plot}" if plot else ""))
+    print(f"{wire.sites} sites; {wrote(output, plot)}")

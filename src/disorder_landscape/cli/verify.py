@@ -7,8 +7,9 @@ from typing import Annotated
 
 import typer
 
-from disorder_landscape.arguments import require
-from disorder_landscape.cli.options import made_here
+from disorder_landscape.cli.options import check_outputs, made_here, wrote
+from disorder_landscape.cli.texts import parse_grid
+from disorder_landscape.inference.defaults import CONTROLS, SHIFTS
 from disorder_landscape.parts import needs
 
 
@@ -32,11 +33,13 @@ def verify(
             "default the one that each measurement states, or none."
         ),
     ] = None,
-    controls: Annotated[int, typer.Option(help="Wires with wrong disorder, 19 or more.")] = 50,
+    controls: Annotated[
+        int, typer.Option(help="Wires with wrong disorder, 19 or more.")
+    ] = CONTROLS,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the wrong disorder.")] = 0,
     shifts: Annotated[
         str, typer.Option(help="Shifts of V in meV to try, as of a gate's offset.")
-    ] = "-0.03:0.03:13",
+    ] = f"{SHIFTS[0]:g}:{SHIFTS[-1]:g}:{SHIFTS.size}",
     output: Annotated[Path | None, typer.Option("--output", "-o", help="netCDF file.")] = None,
 ) -> None:
     """Compare measurements with the predicted wire, and with wires of wrong disorder.
@@ -48,36 +51,25 @@ def verify(
 
     Example: landscape verify Y.nc other.nc --model data_small/models/five_components_and_alpha
     """
-    from tqdm import tqdm
-
     from disorder_landscape.dataset.store import read_dataset, write_dataset
-    from disorder_landscape.files import check_netcdf
+    from disorder_landscape.estimates import settings_bar
     from disorder_landscape.inference.problem.noise import parse_noise
     from disorder_landscape.inference.verification.comparison import OF_CHANNELS, table
     from disorder_landscape.inference.verify import verify as compare
     from disorder_landscape.learning.model import load_model_config
-    from disorder_landscape.simulation import parse_grid
 
     if output is not None:
-        check_netcdf("output", output)
-        read = {path.resolve() for path in (prediction, *measurements)}
-        must = "be another file than those that are read"
-        require(output.resolve() not in read, "output", must, f"it is '{output}'")
+        check_outputs(output, None, (prediction, *measurements))
     config = None if model is None else load_model_config(model).dataset
     predicted = read_dataset(prediction, ("potential",))
     measured = [read_dataset(path) for path in measurements]
     tried = parse_grid("shifts", shifts)
     errors = None if noise is None else parse_noise(noise)
-    with tqdm(unit=" settings", delay=1, desc="verify") as bar:
-
-        def progress(done: int, in_all: int) -> None:
-            bar.total = in_all
-            bar.update(done)
-
+    with settings_bar("verify") as progress:
         result = compare(predicted, measured, errors, controls, seed, config, tried, progress)
     result = result.assign_coords(measurement=[str(path) for path in measurements])
     if output is not None:
         write_dataset(result, output, made_here(), may_lack=["p_samples", *OF_CHANNELS])
     print("\n".join(table(result)))
     if output is not None:
-        print(f"wrote {output}")
+        print(wrote(output))

@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from disorder_landscape.model.parameters import COMPONENTS, SITES, Nanowire
+
 PotentialFile = Annotated[
     Path | None,
     typer.Option(help="V_dis per site in meV: .csv (a line each), .npy or .nc (potential)."),
@@ -16,10 +18,13 @@ PotentialSeed = Annotated[
 ]
 Components = Annotated[
     int | None,
-    typer.Option(help="Disorder components of a drawn potential; 0: pristine.  [default: 5]"),
+    typer.Option(
+        help=f"Disorder components of a drawn potential; 0: pristine.  [default: {COMPONENTS}]"
+    ),
 ]
 Sites = Annotated[
-    int | None, typer.Option(help="Sites of the wire.  [default: those of the file, or 300]")
+    int | None,
+    typer.Option(help=f"Sites of the wire.  [default: those of the file, or {SITES}]"),
 ]
 Mass = Annotated[float, typer.Option(help="Effective mass in electron masses.")]
 Lattice = Annotated[float, typer.Option(help="Lattice spacing in nm.")]
@@ -44,3 +49,4 @@ Barrier = Annotated[
 Angle = Annotated[
     float, typer.Option("--theta", help="Angle of the field relative to the wire in degrees.")
 ]
+USUAL_BARRIER = ",".join(f"{one:g}" for one in dict.fromkeys(Nanowire.barrier))

@@ -20,9 +20,9 @@ from disorder_landscape.dataset.hdf5 import ATTRIBUTES, open_hdf5
 from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
 from disorder_landscape.executors.executor import WHOLE, Executor, Share
 from disorder_landscape.executors.local import IN_THIS_PROCESS
-from disorder_landscape.model.quantities import AXES, CONDUCTANCES
+from disorder_landscape.model.quantities import AXES, CONDUCTANCES, DRAWN
 
-VARIABLES = (*CONDUCTANCES, "components", "alpha", "potential")
+VARIABLES = (*CONDUCTANCES, *DRAWN)
 """What is read back; `error` and `energies` of the solver are in most shards, for whoever asks."""
 LARGEST_ERROR = "largest_error"
 """Attribute of a shard: the largest of the solver's error estimates in e²/h."""
@@ -218,7 +218,7 @@ def read_disorder(config: DatasetConfig, folder: Path) -> xr.Dataset:
     require_complete(config, folder)
     parts = []
     for k in range(shard_count(config)):
-        part = _read_shard(config, folder, k, ("components", "alpha", "potential"))
+        part = _read_shard(config, folder, k, DRAWN)
         parts.append(part.assign(mean=part["potential"].mean("site")).drop_vars("potential"))
     return _joined(parts)
 

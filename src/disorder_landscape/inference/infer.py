@@ -20,6 +20,7 @@ from disorder_landscape.arguments import (
 )
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.inference.checkpoint import Checkpoint
+from disorder_landscape.inference.defaults import SAMPLES
 from disorder_landscape.inference.discrepancy import BestEffort, best_effort, discrepancy_of
 from disorder_landscape.inference.given import Model, config_of, observation_of, prior_given
 from disorder_landscape.inference.invert import invert
@@ -45,7 +46,6 @@ from disorder_landscape.inference.stages import (
 from disorder_landscape.inference.verdict import verdict
 from disorder_landscape.learning.model import TrainedModel, load_model
 
-SAMPLES = 64
 SEARCH = 10
 """Number of the search's version. What an interrupted run of another one has found is of no use."""
 

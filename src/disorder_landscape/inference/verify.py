@@ -27,14 +27,13 @@ from disorder_landscape.arguments import (
     whole_number_in,
 )
 from disorder_landscape.config import DatasetConfig
+from disorder_landscape.inference.defaults import CONTROLS, SHIFTS
 from disorder_landscape.inference.problem.noise import noise_of_channels, stated_noise
 from disorder_landscape.inference.verification.compared import compared
 from disorder_landscape.inference.verification.comparison import SIGNIFICANCE, comparison
-from disorder_landscape.inference.verification.mismatch import SHIFTS, mean_squares, simulations
+from disorder_landscape.inference.verification.mismatch import mean_squares, simulations
 from disorder_landscape.inference.verification.predictive import p_of_samples
 from disorder_landscape.observables.conductance import Progress
-
-CONTROLS = 50
 
 
 def verify(

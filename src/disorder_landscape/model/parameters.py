@@ -26,6 +26,8 @@ MOST_SITES = 100_000
 """Most sites of a wire that a command or a configuration makes."""
 SITES = 300
 """Sites of the paper's 3 µm wire at a = 10 nm (S-I)."""
+COMPONENTS = 5
+"""Kept of the disorder: the smaller one of the paper's two numbers (S-II.1)."""
 ALPHA = 8.0
 """Nominal spin–orbit coupling in meV nm (S-I)."""
 ALPHA_RANGE = (6.4, 9.6)
@@ -211,6 +213,8 @@ PARAMETER_RANGES = {
 """Range and unit within which each parameter of a wire is accepted that is one number."""
 FOLLOWING = ("lead_alpha", "lead_g", "parent_dissipation")
 """Parameters that may be None: then they follow another one."""
+STATED = tuple(name for name in PARAMETER_RANGES if name not in FOLLOWING)
+"""Parameters that a file states of the wire in it, besides the barriers."""
 COLDEST, HOTTEST = 1e-6, 10.0
 """Range of temperatures above zero in K."""
 BARRIER_RANGE = (-1e3, 1e3, "meV")

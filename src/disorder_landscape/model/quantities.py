@@ -8,6 +8,8 @@ CONDUCTANCES = ("G_LL", "G_RR", "G_LR", "G_RL")
 """Order of the conductance matrix's elements wherever they share an axis."""
 AXES = ("mu", "B", "bias")
 """Order of the axes over which they are measured, the configurations K."""
+DRAWN = ("components", "alpha", "potential")
+"""What a realization is drawn with, and what a network predicts."""
 QUANTITIES = {
     "mu": ("chemical potential", "meV"),
     "B": ("magnetic field", "T"),
@@ -45,8 +47,6 @@ QUANTITIES = {
     "potential": ("disorder potential without barriers", "meV"),
     "components_mean": ("mean of the components over the posterior", "meV"),
     "components_std": ("standard deviation of the components", "meV"),
-    "alpha_mean": ("mean of the spin-orbit coupling over the posterior", "meV nm"),
-    "alpha_std": ("standard deviation of the spin-orbit coupling", "meV nm"),
     "potential_mean": ("mean of the disorder potential over the posterior", "meV"),
     "potential_std": ("standard deviation of the disorder potential", "meV"),
     "misfit": ("root-mean-square difference of explained and measured conductances", "e^2/h"),

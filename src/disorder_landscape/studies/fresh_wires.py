@@ -21,7 +21,7 @@ from pydantic import AfterValidator, Field
 from disorder_landscape.chain import MODELS, shipped_model
 from disorder_landscape.config import DatasetConfig, Positive
 from disorder_landscape.dataset.realizations import realization
-from disorder_landscape.inference.infer import SAMPLES
+from disorder_landscape.inference.defaults import SAMPLES
 from disorder_landscape.inference.invert import invert
 from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.problem.gaussian import Gaussian

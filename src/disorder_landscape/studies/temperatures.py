@@ -23,13 +23,13 @@ from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.config import DatasetConfig, Positive
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.model.parameters import FloatArray
+from disorder_landscape.model.quantities import CONDUCTANCES
 from disorder_landscape.observables.conductance import conductance
 from disorder_landscape.observables.visibility import topological_visibility
 from disorder_landscape.pictures import write_picture
 from disorder_landscape.studies.rows import Row, numbers
 from disorder_landscape.studies.study import Derived, Place, Plan
 
-CHANNELS = ("G_LL", "G_RR", "G_LR", "G_RL")
 TARGETS = ("local", "nonlocal", "visibility")
 """Of which R² is given: G_LL at zero bias, G_LR at the largest, and T_IV of the left end."""
 LIMIT = 1.0
@@ -94,7 +94,9 @@ def _maps(config: DatasetConfig) -> FloatArray:
     """Return conductances, shape (wire, mu, B, bias, 4), in e²/h."""
     wires = [realization(config, i).wire for i in range(config.realizations)]
     each = [conductance(w, config.mu, config.B, config.bias, config.temperature) for w in wires]
-    return np.array([np.stack([G[name].to_numpy() for name in CHANNELS], axis=-1) for G in each])
+    return np.array(
+        [np.stack([G[name].to_numpy() for name in CONDUCTANCES], axis=-1) for G in each]
+    )
 
 
 def _told(plan: TemperaturesPlan, hot: FloatArray, cold: FloatArray) -> dict[str, float]:

@@ -19,9 +19,9 @@ from pydantic import Field
 
 from disorder_landscape.chain import FIVE, SHIPPED, preset_run, read_test_set
 from disorder_landscape.config import DatasetConfig, Positive
+from disorder_landscape.inference.defaults import WIDEST_SHIFT
 from disorder_landscape.inference.verify import verify
 from disorder_landscape.learning.prediction import predict
-from disorder_landscape.model.disorder import MEAN_STD
 from disorder_landscape.model.parameters import Nanowire
 from disorder_landscape.observables.conductance import conductance
 from disorder_landscape.studies.rows import Row, numbers
@@ -36,8 +36,6 @@ BIAS = np.array([-0.03, 0.01])
 BARRIERS = (25.0, 10.0)
 """Left and right, in meV; 15 in the training."""
 ANGLE = np.pi / 6
-WIDEST_SHIFT = 3 * MEAN_STD
-"""Of V in meV, to either side."""
 
 
 @dataclass(frozen=True)

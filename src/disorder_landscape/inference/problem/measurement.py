@@ -16,6 +16,7 @@ from disorder_landscape.config import DatasetConfig
 from disorder_landscape.model.hamiltonian import FULL_TURN
 from disorder_landscape.model.parameters import (
     PARAMETER_RANGES,
+    STATED,
     TEMPERATURE,
     FloatArray,
     Nanowire,
@@ -35,12 +36,7 @@ ERRORS = 6.0
 """… and so many standard deviations of errors may be beyond it. …"""
 LARGEST = 10.0
 """… More than this are none, whatever the errors are."""
-OF_THE_WIRE = (
-    *("alpha", "g", "gamma", "delta0", "critical_field", "dissipation"),
-    *("mass", "lattice", "lead_mu"),
-)
-"""Parameters of `Nanowire` that a measurement may state as attributes, besides its barriers."""
-FIXED = tuple(name for name in OF_THE_WIRE if name not in ("alpha", "lead_mu"))
+FIXED = tuple(name for name in STATED if name not in ("alpha", "lead_mu"))
 """Those that all wires of this program's networks have in common."""
 AS_THE_WIRE = {"lead_alpha": "alpha", "lead_g": "g", "parent_dissipation": "dissipation"}
 """Parameters of leads and parent that are, in every inversion, those of the wire."""
@@ -180,7 +176,7 @@ def _stated(attrs: Mapping[Any, Any]) -> dict[str, float]:
     """Return what attributes say of the device."""
     stated = {
         name: number_in(name, attrs[name], *PARAMETER_RANGES[name])
-        for name in OF_THE_WIRE
+        for name in STATED
         if name in attrs
     }
     for name, of_wire in AS_THE_WIRE.items():

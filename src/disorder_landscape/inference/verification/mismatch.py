@@ -17,15 +17,12 @@ from numpy.typing import NDArray
 
 from disorder_landscape.inference.problem.measurement import Measurement
 from disorder_landscape.inference.verification.comparison import scores
-from disorder_landscape.model.disorder import MEAN_STD
 from disorder_landscape.model.parameters import FloatArray, Nanowire
 from disorder_landscape.model.quantities import CONDUCTANCES
 from disorder_landscape.observables.conductance import conductance
 
-SHIFTS = np.linspace(-3 * MEAN_STD, 3 * MEAN_STD, 13)
-"""Means of V in meV that are tried; the steps are about kT."""
 FINER = np.linspace(-0.8, 0.8, 9)
-"""Then those around the best of them, in units of the step: conductances change within kT."""
+"""Means of V that are tried around the best one, in units of the step before, which is about kT."""
 
 
 def simulations(wires: int, measured: Sequence[Measurement], shifts: FloatArray) -> int:
