@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.stats import kstest
 
-from disorder_landscape.inference.posterior.markov_chain import independence_chain
+from disorder_landscape.studies.markov_chain import independence_chain
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.verification.predictive import predictive_p
 from linear_data import posterior
