@@ -6,7 +6,8 @@ import numpy as np
 
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.inference.problem.gaussian import Gaussian
-from disorder_landscape.inference.problem.unknowns import Unknowns, unknowns_of
+from disorder_landscape.inference.problem.unknowns import Unknowns
+from disorder_landscape.studies.truth import unknowns_of
 
 CONFIG = DatasetConfig(realizations=1, components=3, sites=50)
 UNKNOWNS = unknowns_of(CONFIG)

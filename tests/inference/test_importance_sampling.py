@@ -25,8 +25,9 @@ from disorder_landscape.inference.posterior.samples import normality, posterior_
 from disorder_landscape.inference.problem import unknowns
 from disorder_landscape.inference.problem.gaussian import Gaussian, log_density, log_mixture
 from disorder_landscape.inference.problem.observation import objective
-from disorder_landscape.inference.problem.unknowns import unknowns_of
 from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED, verdict
+from disorder_landscape.studies.truth import more_probable_than, unknowns_of
+from disorder_landscape.studies.truth import z_scores as z_scores_of
 from linear_data import CONFIG, DATA, SIZE, UNKNOWNS, Linear, posterior
 
 PRIOR = UNKNOWNS.prior
@@ -168,9 +169,9 @@ def test_what_is_more_probable_is_right_over_many_wires(lines, wide):
         if wide:
             *_, drawn = importance_sampling(lines, [Part(widened(exact, 1.3), 1.0)], [seed])
         found = Outcome([optimum_at(lines, exact)], drawn)
-        share += [found.more_probable(float(one)) for one in height]
+        share += [more_probable_than(float(one), found) for one in height]
     assert kstest(share, "uniform").statistic < 0.06
-    z_scores = np.concatenate([found.z_scores(x) for x in truths])
+    z_scores = np.concatenate([z_scores_of(found, x) for x in truths])
     assert kstest(z_scores, "norm").statistic < 0.04
 
 
@@ -192,10 +193,10 @@ def test_what_is_more_probable_does_not_depend_on_the_posteriors_shape():
         *_, drawn = importance_sampling(folds, [Part(one, 0.5) for one in valleys], [seed])
         for one, shares in ((_evenly_weighted(drawn), wrong), (drawn, right)):
             found = Outcome([optimum_at(folds, valleys[0])], one)
-            shares += [found.more_probable(float(h)) for h in height]
-        z_scores += [found.z_scores(x) for x in truths]
+            shares += [more_probable_than(float(h), found) for h in height]
+        z_scores += [z_scores_of(found, x) for x in truths]
         normal = Outcome([replace(optimum_at(folds, valleys[0]), answer=drawn.moments)])
-        of_moments += [normal.z_scores(x) for x in truths]
+        of_moments += [z_scores_of(normal, x) for x in truths]
     distance = [kstest(np.ravel(z), "norm").statistic for z in (z_scores, of_moments)]
     assert distance[0] < 0.04
     assert distance[1] > 0.08
@@ -211,7 +212,7 @@ def test_samples_of_a_wider_distribution_do_not_tell_what_is_more_probable(lines
     exact = posterior(lines)
     *_, drawn = importance_sampling(lines, [Part(exact, 1.0)], [0])
     found = Outcome([optimum_at(lines, exact)], replace(drawn, power=0.5))
-    assert np.isnan(found.more_probable(1e3))
+    assert np.isnan(more_probable_than(1e3, found))
 
 
 def test_interrupted_importance_sampling_goes_on(lines, tmp_path):

@@ -21,7 +21,6 @@ from disorder_landscape.inference.problem.distributions import Uniform
 from disorder_landscape.inference.problem.measurement import measurement_of, settings_of
 from disorder_landscape.inference.problem.noise import noise_of_channels, parse_noise, stated_noise
 from disorder_landscape.inference.problem.observation import Observation
-from disorder_landscape.inference.problem.unknowns import unknowns_of
 from disorder_landscape.inference.report import summary
 from disorder_landscape.inference.search.few_unknowns import InversionSettings
 from disorder_landscape.inference.search.first_guess import network_guess
@@ -31,6 +30,7 @@ from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED, NOT_D
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.learning.scaling import LabelScaler
 from disorder_landscape.model.quantities import CONDUCTANCES
+from disorder_landscape.studies.truth import unknowns_of
 
 NOISE = 0.001
 DATASET = DatasetConfig(

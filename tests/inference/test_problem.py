@@ -7,8 +7,9 @@ from scipy.stats import multivariate_normal
 from disorder_landscape.inference.problem.gaussian import log_density
 from disorder_landscape.inference.problem.noise import noise_of_channels
 from disorder_landscape.inference.problem.observation import Observation
-from disorder_landscape.inference.problem.unknowns import unknowns_of
 from disorder_landscape.model.disorder import disorder_realization
+from disorder_landscape.studies.truth import labels as labels_of
+from disorder_landscape.studies.truth import of_device, site_distance, unknowns_of
 from linear_data import CONFIG, SIZE, UNKNOWNS
 
 
@@ -23,7 +24,7 @@ def test_densities_are_scipys():
 def test_the_prior_is_the_disorder_models():
     rng = np.random.default_rng(3)
     drawn = [disorder_realization(rng, 3, 50) for _ in range(4000)]
-    X = np.array([UNKNOWNS.of_device(c, V, {"alpha": rng.uniform(6.4, 9.6)}) for c, V in drawn])
+    X = np.array([of_device(UNKNOWNS, c, V, {"alpha": rng.uniform(6.4, 9.6)}) for c, V in drawn])
     np.testing.assert_allclose(np.cov(X.T), np.eye(SIZE), atol=0.08)
     np.testing.assert_allclose(X.mean(axis=0), 0, atol=0.08)
     c, V = drawn[0]
@@ -39,7 +40,7 @@ def test_the_potentials_std_needs_no_potential():
     rng = np.random.default_rng(4)
     one, other = UNKNOWNS.prior.draw(rng, 2)
     apart = UNKNOWNS.potential(one) - UNKNOWNS.potential(other)
-    assert UNKNOWNS.site_distance(one, other) == pytest.approx(np.sqrt((apart**2).mean()))
+    assert site_distance(UNKNOWNS, one, other) == pytest.approx(np.sqrt((apart**2).mean()))
     X = UNKNOWNS.prior.draw(rng, 20_000)
     spread = np.sqrt(UNKNOWNS.potential(X).var(axis=0).mean())
     assert UNKNOWNS.site_std(UNKNOWNS.prior.covariance) == pytest.approx(spread, rel=0.02)
@@ -51,10 +52,12 @@ def test_the_potentials_std_needs_no_potential():
 def test_names_and_vectors():
     assert UNKNOWNS.names == ("c_1", "c_2", "c_3", "mean", "alpha")
     x = UNKNOWNS.vector({"c_2": np.array([0.1, 0.2])})
-    np.testing.assert_allclose(UNKNOWNS.labels(x)[:, :3], [[0, 0.1, 0], [0, 0.2, 0]], atol=1e-15)
+    np.testing.assert_allclose(
+        labels_of(UNKNOWNS, x)[:, :3], [[0, 0.1, 0], [0, 0.2, 0]], atol=1e-15
+    )
     np.testing.assert_array_equal(x[:, 3:], 0)
     labels = dict(zip(UNKNOWNS.names, np.array([0.3, -0.2, 0.1, 0.02, 7.0]), strict=True))
-    np.testing.assert_allclose(UNKNOWNS.labels(UNKNOWNS.vector(labels)), [*labels.values()])
+    np.testing.assert_allclose(labels_of(UNKNOWNS, UNKNOWNS.vector(labels)), [*labels.values()])
     fixed = unknowns_of(CONFIG.model_copy(update={"alpha_range": (7.0, 7.0)}))
     assert fixed.names == ("c_1", "c_2", "c_3", "mean")
     assert fixed.parameter("alpha", np.zeros(4)) == 7.0

@@ -49,6 +49,7 @@ from disorder_landscape.studies.fresh_wires import (
 from disorder_landscape.studies.plan import load_study
 from disorder_landscape.studies.rows import as_text, read_rows, write_rows
 from disorder_landscape.studies.study import Place
+from disorder_landscape.studies.truth import of_device
 from disorder_landscape.studies.uniqueness import Setting, information_rows
 from disorder_landscape.studies.unmodelled import (
     KINDS,
@@ -283,7 +284,8 @@ def test_the_true_device_is_right_where_the_prior_holds_it(prior, kind, monkeypa
         assert (network is None) == (prior == "wide")
         unknowns, truth = observation.unknowns, realization(fresh, 0)
         wire, settings = changed(kind, 0, truth.wire, observation.measurement)
-        x = unknowns.of_device(
+        x = of_device(
+            unknowns,
             truth.components,
             wire.potential,
             {

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2, norm
 
 from disorder_landscape.inference.optimum import Optimum, best
 from disorder_landscape.inference.posterior.importance_sampling import ImportanceSamples
@@ -40,32 +39,6 @@ class Outcome:
     def is_posterior(self) -> bool:
         """Whether the error bars are those of the posterior, as far as is known."""
         return self.importance_samples is None or self.importance_samples.is_enough
-
-    def more_probable(self, height: float) -> float:
-        """Return how much of the posterior is more probable than this −2 log of its density.
-
-        It is uniform over [0, 1] where the density is that of the truth: with samples whatever the
-        posterior's shape, and without where it is normal about the best optimum. NaN if the samples
-        are those of a wider distribution.
-        """
-        drawn = self.importance_samples
-        if drawn is None:
-            return float(chi2.cdf(height - self.best.objective, self.best.answer.mean.size))
-        if drawn.height is None or drawn.power < 1:
-            return float(np.nan)
-        return float(drawn.weight[drawn.height < height].sum())
-
-    def z_scores(self, truth: FloatArray) -> FloatArray:
-        """Return the standard normal deviates of the truth's quantiles, shape (unknown,).
-
-        They are normally distributed over measurements if the posteriors are right, whatever their
-        shape. Of a normal distribution they are the distances from the mean in standard deviations.
-        """
-        drawn, answer = self.importance_samples, self.answer
-        if drawn is None:
-            return np.asarray((truth - answer.mean) / np.sqrt(np.diag(answer.covariance)))
-        least = 0.5 / drawn.effective_sample_size
-        return np.asarray(norm.ppf((drawn.weight @ (drawn.samples < truth)).clip(least, 1 - least)))
 
     def draw(self, rng: np.random.Generator, count: int) -> FloatArray:
         """Return an even number of samples of the posterior, shape (sample, unknown)."""

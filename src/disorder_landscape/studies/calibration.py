@@ -24,12 +24,12 @@ from scipy.stats import kstest, norm, uniform
 from disorder_landscape.arguments import require
 from disorder_landscape.config import Positive
 from disorder_landscape.inference.invert import invert
-from disorder_landscape.studies.markov_chain import independence_chain
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.parts import needs
 from disorder_landscape.pictures import write_picture
 from disorder_landscape.studies import fresh_wires
 from disorder_landscape.studies.fresh_wires import Noise, ShippedModel, fresh_wire, network_of
+from disorder_landscape.studies.markov_chain import independence_chain
 from disorder_landscape.studies.rows import Row
 from disorder_landscape.studies.study import Derived, Place, Plan
 

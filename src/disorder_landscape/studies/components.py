@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -19,6 +20,7 @@ from disorder_landscape.model.parameters import ALPHA, BIAS
 from disorder_landscape.studies.fresh_wires import Noise, inverted, measured_wire, model_of
 from disorder_landscape.studies.rows import rounded
 from disorder_landscape.studies.study import Part, Place, Plan
+from disorder_landscape.studies.truth import site_distance
 
 THIRTY_COMPONENTS = 30
 """Of which there is a network. For them the paper expects 1.2 million core-hours."""
@@ -88,7 +90,7 @@ class ComponentsPlan(Plan):
         observation, truth = measured_wire(self.grid(task.components), task.noise, task.index)
         network = model_of(shipped_model(THIRTY)) if task.components == THIRTY_COMPONENTS else None
         found = inverted(observation, network, task.index)
-        distance = observation.unknowns.site_distance
+        distance = partial(site_distance, observation.unknowns)
         row = {
             "components": task.components,
             "noise": task.noise,

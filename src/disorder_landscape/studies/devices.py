@@ -20,10 +20,11 @@ from disorder_landscape.config import Positive
 from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.studies.calibration import coverage, joint_coverage
 from disorder_landscape.studies.drawn_devices import Grid, drawn_device, measured_device, seed_of
-from disorder_landscape.studies.fresh_wires import Noise, inverted, more_probable
+from disorder_landscape.studies.fresh_wires import Noise, inverted
 from disorder_landscape.studies.named_priors import PriorName, named_prior
 from disorder_landscape.studies.rows import Row, rounded
 from disorder_landscape.studies.study import Derived, Place, Plan, by_name
+from disorder_landscape.studies.truth import more_probable, shape_std, z_scores
 
 NUMBERS = (
     *("noise", "site_error", "spread", "shape_error", "shape_spread", "more_probable"),
@@ -98,7 +99,7 @@ def device_row(task: Task, group: Devices) -> dict[str, object]:
         `site_error` of V in meV, root mean square over the sites, and its error bar `spread`; the
         same of V less its mean, `shape_error` and `shape_spread`; `more_probable`, how much of
         the posterior is more probable than the truth; the outcome of `Inverted`; and, as text, for
-        each unknown `z_scores` of the truth (`Outcome.z_scores`), and `widths`, the standard
+        each unknown `z_scores` of the truth (`truth.z_scores`), and `widths`, the standard
         deviation as a share of the prior's.
     """
     unknowns, seed = group.unknowns, seed_of(task.name, task.index)
@@ -115,12 +116,12 @@ def device_row(task: Task, group: Devices) -> dict[str, object]:
         "site_error": np.sqrt((off**2).mean()),
         "spread": found.outcome["spread"],
         "shape_error": off.std(),
-        "shape_spread": unknowns.shape_std(covariance),
+        "shape_spread": shape_std(unknowns, covariance),
         "more_probable": more_probable(observation, found.found, truth),
     }
     return {
         **rounded(row | found.outcome),
-        "z_scores": " ".join(f"{z:.3f}" for z in found.found.z_scores(truth)),
+        "z_scores": " ".join(f"{z:.3f}" for z in z_scores(found.found, truth)),
         "widths": " ".join(f"{width:.3g}" for width in std),
     }
 

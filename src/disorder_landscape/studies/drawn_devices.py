@@ -21,6 +21,7 @@ from disorder_landscape.model.disorder import mean_reduction, smooth_noise
 from disorder_landscape.model.parameters import B_MAX, BIAS, TEMPERATURE, FloatArray, Nanowire
 from disorder_landscape.studies.fresh_wires import SEED, exact_conductances
 from disorder_landscape.studies.study import Part
+from disorder_landscape.studies.truth import of_device
 
 
 class Grid(Part):
@@ -66,7 +67,7 @@ def drawn_device(
     V = V - V.mean() * (1 - mean_reduction(given.sites, *disorder, given.mean_std))
     parameters = {name: float(unknowns.parameter(name, x)) for name in unknowns.parameters}
     wire = replace(device.wire, potential=V)
-    return Device(wire, device.setup), unknowns.of_device(np.empty(0), V, parameters)
+    return Device(wire, device.setup), of_device(unknowns, np.empty(0), V, parameters)
 
 
 def measured_device(

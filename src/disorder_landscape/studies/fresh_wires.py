@@ -27,14 +27,14 @@ from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.measurement import Measurement, empty_measurement
 from disorder_landscape.inference.problem.noise import noise_of_channels
-from disorder_landscape.inference.problem.observation import Observation, objective
-from disorder_landscape.inference.problem.unknowns import unknowns_of
+from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.result import evidence
 from disorder_landscape.inference.verdict import verdict
 from disorder_landscape.learning.model import TrainedModel, load_model
 from disorder_landscape.model.parameters import FloatArray, Nanowire
 from disorder_landscape.solver.quadrature import thermal_quadrature
 from disorder_landscape.studies.study import Part, Plan, one_of
+from disorder_landscape.studies.truth import of_realization, unknowns_of
 
 SEED = 2026
 """Of the fresh wires; the datasets' is 0."""
@@ -106,7 +106,7 @@ def measured_wire(
     """Return a measurement of a fresh wire of a disorder model, with errors, and the truth."""
     config = config.model_copy(update={"seed": SEED})
     unknowns = unknowns_of(config)
-    truth = unknowns.of_realization(realization(config, index))
+    truth = of_realization(unknowns, realization(config, index))
     settings = empty_measurement(config)
     G, errors = _conductances_of_wire(config, index), noise_of_channels(noise)
     return Observation(measured(settings, G, noise, index), unknowns, errors), truth
@@ -175,16 +175,6 @@ def log_evidence(observation: Observation, found: Outcome, rng: np.random.Genera
     """Return that of an answer, with two digits after the point."""
     X = found.draw(rng, SAMPLES)
     return Decimal(f"{evidence(observation, found, X)['log_evidence']:.2f}")
-
-
-def more_probable(observation: Observation, found: Outcome, truth: FloatArray) -> float:
-    """Return how much of the posterior is more probable than the truth (unknown,).
-
-    Over wires it is uniform if the posteriors are right, all unknowns at once. `coverage` does not
-    see correlations, nor a single wrong axis.
-    """
-    height = objective(observation, truth, observation.simulate(truth[None])[0])
-    return found.more_probable(float(height))
 
 
 def wrong(table: pd.DataFrame) -> pd.Series:

@@ -20,10 +20,11 @@ from disorder_landscape.inference.problem.measurement import simulated
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.observables.visibility import topological_visibility
-from disorder_landscape.studies.fresh_wires import Noise, inverted, measured_wire, more_probable
+from disorder_landscape.studies.fresh_wires import Noise, inverted, measured_wire
 from disorder_landscape.studies.rows import Row, rounded
 from disorder_landscape.studies.study import Derived, Part, Place, Plan
 from disorder_landscape.studies.temperatures import Temperature
+from disorder_landscape.studies.truth import more_probable, site_distance
 
 TARGETS = ("local", "nonlocal", "visibility")
 """What is predicted: G_LL and G_RR, G_LR and G_RL, T_IV of both ends, on the measured grid."""
@@ -99,7 +100,7 @@ class HotToColdPlan(Plan):
             "temperature": task.temperature,
             "noise": task.noise,
             "index": task.index,
-            "site_error": observation.unknowns.site_distance(mean, truth),
+            "site_error": site_distance(observation.unknowns, mean, truth),
             "more_probable": more_probable(observation, found.found, truth),
         }
         X = found.found.draw(np.random.default_rng([task.index, 5]), self.samples)

@@ -17,11 +17,11 @@ from disorder_landscape.studies.fresh_wires import (
     Task,
     fresh_wire,
     inverted,
-    more_probable,
     network_of,
 )
 from disorder_landscape.studies.rows import rounded
 from disorder_landscape.studies.study import Place
+from disorder_landscape.studies.truth import labels, more_probable, site_distance, z_scores
 
 
 class InversionsPlan(FreshWiresPlan):
@@ -42,7 +42,7 @@ def inversion_row(task: Task) -> dict[str, object]:
     dict
         V errors in meV, root mean square over the sites; the errors of α in meV nm; `scaled_error`,
         the mean square error of the paper's labels in units of their variance, which is 1 − R²;
-        `z_scores` of the true unknowns (`Outcome.z_scores`); `more_probable`, how much of the
+        `z_scores` of the true unknowns (`truth.z_scores`); `more_probable`, how much of the
         posterior is more probable than the truth; at how many (μ, B) both the wire and the answer
         are topological, and at how many either is; and the outcome of `Inverted`.
     """
@@ -53,7 +53,7 @@ def inversion_row(task: Task) -> dict[str, object]:
     guess = network_labels(network, unknowns, observation.measurement.G[None])[0]
     alpha = partial(unknowns.parameter, "alpha")
     papers = np.array([name != "mean" for name in unknowns.names])
-    true, answered, guessed = (unknowns.labels(x) for x in (truth, mean, guess))
+    true, answered, guessed = (labels(unknowns, x) for x in (truth, mean, guess))
     variance = unknowns.label_std**2
     measured = observation.measurement
     true_wire, wire = (d.wire for d in unknowns.devices(np.array([truth, mean]), measured))
@@ -62,8 +62,8 @@ def inversion_row(task: Task) -> dict[str, object]:
         "model": task.model,
         "noise": task.noise,
         "index": task.index,
-        "network_error": unknowns.site_distance(guess, truth),
-        "site_error": unknowns.site_distance(mean, truth),
+        "network_error": site_distance(unknowns, guess, truth),
+        "site_error": site_distance(unknowns, mean, truth),
         "network_scaled_error": ((guessed - true) ** 2 / variance)[papers].mean(),
         "scaled_error": ((answered - true) ** 2 / variance)[papers].mean(),
         "network_alpha_error": abs(alpha(guess) - alpha(truth)),
@@ -73,5 +73,4 @@ def inversion_row(task: Task) -> dict[str, object]:
         "either_topological": either,
         **found.outcome,
     }
-    z_scores = found.found.z_scores(truth)
-    return {**rounded(row), "z_scores": " ".join(f"{z:.3f}" for z in z_scores)}
+    return {**rounded(row), "z_scores": " ".join(f"{z:.3f}" for z in z_scores(found.found, truth))}

@@ -7,6 +7,7 @@ before.
 from __future__ import annotations
 
 import time
+from functools import partial
 from typing import Annotated, Literal
 
 import numpy as np
@@ -20,14 +21,10 @@ from disorder_landscape.inference.search.gauss_newton import gauss_newton
 from disorder_landscape.inference.search.regression_rounds import RoundSettings, regression_rounds
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.parts import needs
-from disorder_landscape.studies.fresh_wires import (
-    FreshWiresPlan,
-    Task,
-    fresh_wire,
-    network_of,
-)
+from disorder_landscape.studies.fresh_wires import FreshWiresPlan, Task, fresh_wire, network_of
 from disorder_landscape.studies.rows import rounded
 from disorder_landscape.studies.study import Place
+from disorder_landscape.studies.truth import site_distance
 
 TRUNCATION = 0.999
 """Part of the singular values' sum that the library keeps."""
@@ -49,7 +46,7 @@ class SmoothersPlan(FreshWiresPlan):
         observation, truth = fresh_wire(task)
         rng = np.random.default_rng([task.index, 2**31])
         start = network_guess(network_of(task.model, task.noise), observation, rng)
-        distance = observation.unknowns.site_distance
+        distance = partial(site_distance, observation.unknowns)
         row: dict[str, object] = {"model": task.model, "noise": task.noise, "index": task.index}
         row["start_error"] = distance(start.mean, truth)
         for name, method in (("library", self._library), ("ours", self._ours)):

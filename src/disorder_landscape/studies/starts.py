@@ -8,6 +8,7 @@ Seeds differ: each start has attempts of its own.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -28,6 +29,7 @@ from disorder_landscape.studies.fresh_wires import (
 )
 from disorder_landscape.studies.rows import Row, numbers, rounded
 from disorder_landscape.studies.study import Derived, Place
+from disorder_landscape.studies.truth import site_distance
 
 STARTS = ("network", "prior")
 OTHER_SEEDS = 2**20
@@ -51,7 +53,7 @@ class StartsPlan(FreshWiresPlan):
             `network_spread`.
         """
         observation, truth = fresh_wire(task)
-        distance = observation.unknowns.site_distance
+        distance = partial(site_distance, observation.unknowns)
         from_network = inverted(observation, network_of(task.model, task.noise), task.index)
         found = from_network, inverted(observation, None, OTHER_SEEDS + task.index)
         row: dict[str, object] = {"model": task.model, "noise": task.noise, "index": task.index}

@@ -21,10 +21,11 @@ from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.inference.problem.measurement import empty_measurement
 from disorder_landscape.inference.problem.noise import noise_of_channels
 from disorder_landscape.inference.problem.observation import Observation
-from disorder_landscape.inference.problem.unknowns import Unknowns, unknowns_of
+from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.search.gauss_newton import linearise
 from disorder_landscape.model.parameters import TEMPERATURE, FloatArray
 from disorder_landscape.studies.study import Part, Place, Plan
+from disorder_landscape.studies.truth import of_realization, unknowns_of
 
 
 @dataclass(frozen=True, order=True)
@@ -106,7 +107,7 @@ def information_rows(setting: Setting, noises: Iterable[float]) -> list[dict[str
     """
     config = setting.config
     unknowns = unknowns_of(config)
-    truth = unknowns.of_realization(realization(config, setting.index))
+    truth = of_realization(unknowns, realization(config, setting.index))
     slope = _slopes(config, unknowns, truth)
     prior = unknowns.prior.covariance
     root = np.linalg.cholesky(prior)

@@ -25,7 +25,7 @@ from disorder_landscape.inference.problem.measurement import (
 from disorder_landscape.inference.problem.noise import noise_of_channels
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.problem.series_resistance import in_series
-from disorder_landscape.inference.problem.unknowns import Unknowns, unknowns_of
+from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.verification.predictive import predictive_p
 from disorder_landscape.model.parameters import FloatArray, Nanowire
 from disorder_landscape.studies.fresh_wires import (
@@ -39,6 +39,7 @@ from disorder_landscape.studies.fresh_wires import (
 from disorder_landscape.studies.named_priors import PriorName, named_prior
 from disorder_landscape.studies.rows import rounded
 from disorder_landscape.studies.study import Part, Place, Plan
+from disorder_landscape.studies.truth import unknowns_of
 
 Kind = Literal[
     "nothing",

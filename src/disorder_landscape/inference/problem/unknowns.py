@@ -20,11 +20,9 @@ import numpy as np
 from scipy.linalg import solve_triangular
 
 from disorder_landscape.arguments import require
-from disorder_landscape.config import DatasetConfig
-from disorder_landscape.dataset.realizations import Realization
 from disorder_landscape.inference.problem.distributions import Distribution
 from disorder_landscape.inference.problem.gaussian import Gaussian
-from disorder_landscape.inference.problem.measurement import Measurement, empty_measurement
+from disorder_landscape.inference.problem.measurement import Measurement
 from disorder_landscape.inference.problem.parameters import PARAMETERS, Setup, nanowire
 from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.model.disorder import component_covariance, potential_from_components
@@ -216,26 +214,10 @@ class Unknowns:
         variance = self._variance(self.to_potential, covariance)
         return np.asarray(np.sqrt(np.maximum(variance, 0.0)))
 
-    def shape_std(self, covariance: FloatArray) -> float:
-        """Return `site_std` of V less its mean over the sites, in meV."""
-        L = self.to_potential
-        mean_square = self._variance(L - L.mean(axis=0), covariance).mean()
-        return float(np.sqrt(max(0.0, mean_square)))
-
     def _variance(self, L: FloatArray, covariance: FloatArray) -> FloatArray:
         """Return the variance of Lξ, shape (site,)."""
         n = self.of_disorder
         return np.asarray(np.einsum("si,ij,sj->s", L, covariance[:n, :n], L))
-
-    def site_distance(self, x: FloatArray, other: FloatArray) -> float:
-        """Return the root-mean-square difference of two potentials in meV."""
-        return self.site_std(np.outer(x - other, x - other))
-
-    def labels(self, x: FloatArray) -> FloatArray:
-        """Return the unknowns by their names, in their units, shape (…, unknown)."""
-        disorder = x[..., : self.of_disorder] @ self._disorder[1].T
-        others = [self.parameter(name, x)[..., None] for name in self.parameters]
-        return np.concatenate([disorder, *others], axis=-1)
 
     @property
     def label_std(self) -> FloatArray:
@@ -274,35 +256,6 @@ class Unknowns:
             *shape, given
         )
         return x
-
-    def of_realization(self, one: Realization) -> FloatArray:
-        """Return the unknowns of a realization, shape (unknown,)."""
-        return self.of_device(one.components, one.potential, {"alpha": one.alpha})
-
-    def of_device(
-        self,
-        components: FloatArray,
-        potential: FloatArray,
-        parameters: Mapping[str, float],
-    ) -> FloatArray:
-        """Return the unknowns of a device that is known, shape (unknown,).
-
-        Of a whole landscape those of the potential that is nearest to its own.
-        """
-        unknown = {name: x for name, x in parameters.items() if name in self.parameters}
-        if not self.is_whole_landscape:
-            named = {f"c_{n}": c for n, c in enumerate(components, start=1)}
-            return self.vector({**named, "mean": float(potential.mean()), **unknown})
-        x = np.zeros(len(self.names))
-        x[: self.of_disorder] = np.linalg.lstsq(self.to_potential, potential, rcond=None)[0]
-        for name, value in unknown.items():
-            x[self.names.index(name)] = self.parameters[name].standard(value)
-        return x
-
-
-def unknowns_of(config: DatasetConfig) -> Unknowns:
-    """Return the unknowns of a dataset's wires, measured on its grid and at its settings."""
-    return Unknowns(Prior.of_dataset(config).for_measurement(empty_measurement(config)))
 
 
 def share_settings(devices: Sequence[Device]) -> bool:

@@ -3,9 +3,9 @@
 import numpy as np
 from scipy.stats import kstest
 
-from disorder_landscape.studies.markov_chain import independence_chain
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.verification.predictive import predictive_p
+from disorder_landscape.studies.markov_chain import independence_chain
 from linear_data import posterior
 
 
