@@ -1,5 +1,6 @@
 """Data that are linear in the unknowns, or bent, and their posterior, which is known."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -7,6 +8,7 @@ import numpy as np
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.unknowns import Unknowns
+from disorder_landscape.inference.search.steps import Steps
 from disorder_landscape.studies.truth import unknowns_of
 
 CONFIG = DatasetConfig(realizations=1, components=3, sites=50)
@@ -43,3 +45,13 @@ def posterior(observation):
     weighted = observation.slope / observation.variance
     covariance = np.linalg.inv(weighted @ observation.slope.T + precision)
     return Gaussian(covariance @ (weighted @ observation.data + precision @ prior.mean), covariance)
+
+
+@dataclass(frozen=True)
+class Ending(Steps):
+    """Steps that end where a function of all that they are given says."""
+
+    where: Callable[..., Gaussian] | None = None
+
+    def end(self, observation, x, attempt, name=None, known=(), goal="optimum"):
+        return self.where(observation, x, attempt, name, known, goal)

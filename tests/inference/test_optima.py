@@ -10,7 +10,7 @@ from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.search import optima as search_optima
 from disorder_landscape.inference.search.gauss_newton import gauss_newton
 from disorder_landscape.inference.search.optima import Optima
-from linear_data import DATA, SIZE, Linear, posterior
+from linear_data import DATA, SIZE, Ending, Linear, posterior
 
 AXIS = np.eye(SIZE)[0]
 
@@ -35,7 +35,7 @@ def optima_of(observation):
     def steps(of, x, attempt, name, known, goal):
         return gauss_newton(of, x, known=known)
 
-    return Optima(observation, steps)
+    return Optima(observation, Ending(where=steps))
 
 
 def test_both_signs_are_found_and_counted(folds):
@@ -96,7 +96,7 @@ def test_ends_that_are_near_but_not_as_good_do_not_agree(linear):
     def steps(of, x, attempt, name, known, goal):
         return Gaussian(x, exact.covariance)
 
-    optima = Optima(linear, steps)
+    optima = Optima(linear, Ending(where=steps))
     for attempt, end in enumerate(ends):
         optima.start_at(end, attempt)
     (one,) = optima.found

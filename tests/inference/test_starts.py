@@ -9,7 +9,7 @@ from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.search.gauss_newton import gauss_newton
 from disorder_landscape.inference.search.optima import AGREEING, STARTS_WHEN_WIDE, Optima
 from disorder_landscape.inference.search.starts import MORE_STARTS, MOST_STARTS, STARTS, Starts
-from linear_data import DATA, SIZE, Linear, posterior
+from linear_data import DATA, SIZE, Ending, Linear, posterior
 
 AXIS = np.eye(SIZE)[0]
 
@@ -27,7 +27,7 @@ def parts(linear):
 
 
 def starts_of(observation, steps):
-    return Starts(Optima(observation, steps), np.random.default_rng(0))
+    return Starts(Optima(observation, Ending(where=steps)), np.random.default_rng(0))
 
 
 def test_steps_use_data_that_are_the_same_for_all_starts_and_then_all(parts):

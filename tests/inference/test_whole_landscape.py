@@ -29,7 +29,7 @@ from disorder_landscape.inference.search.whole_landscape import (
 from disorder_landscape.inference.verdict import CONVERGED, is_surely_right, verdict
 from disorder_landscape.model.disorder import smooth_noise
 from disorder_landscape.solver.quadrature import thermal_quadrature
-from linear_data import DATA, Linear, posterior
+from linear_data import DATA, Ending, Linear, posterior
 
 SITES, AMPLITUDE, NOISE = 30, 0.8, 0.002
 MU, B, BIAS = np.linspace(0, 4.2, 12), np.linspace(0, 0.8, 3), np.linspace(-0.08, 0.08, 5)
@@ -140,7 +140,7 @@ def test_steps_go_from_few_data_to_all_until_ways_agree(whole):
         asked.append((name, goal))
         return exact
 
-    optima, ways = optima_of_whole_landscape(whole, steps, 0)
+    optima, ways = optima_of_whole_landscape(whole, Ending(where=steps), 0)
     expected = []
     for start, way in enumerate(["way.0", *(f"way.0.{k}" for k in range(1, STARTS[0]))]):
         expected += [(None, "few"), (f"{way}.{LINES.stop}.some", "better")]
@@ -163,7 +163,7 @@ def test_lower_mu_follow_when_draws_are_foretold(whole, far, monkeypatch):
         return ends.pop() if ends else posterior(whole)
 
     monkeypatch.setattr(Whole, "on_random_points", of)
-    optima_of_whole_landscape(whole, steps, 0)
+    optima_of_whole_landscape(whole, Ending(where=steps), 0)
     counts = [LINES[0]] * 3 + [count for count in LINES for _ in range(FORETOLD[0])]
     assert lines[: len(counts)] == [(count / FEW[0], count) for count in counts]
 
@@ -190,7 +190,7 @@ def test_other_ways_down_are_tried_from_draws_of_the_prior(whole, far):
         assert goal == ("few" if name is None else "place")
         return far
 
-    optima, ways = optima_of_whole_landscape(whole, steps, 0)
+    optima, ways = optima_of_whole_landscape(whole, Ending(where=steps), 0)
     assert ways == WAYS_DOWN == len(begun)
     assert [name for name in names if name] == [f"{way}.{way}" for way in range(WAYS_DOWN)]
     assert names.count(None) == DRAWS * len(LINES) * WAYS_DOWN
@@ -206,7 +206,7 @@ def test_steps_go_back_to_draws_where_more_data_are_not_explained(whole, far):
         begun.append(name)
         return far if name is not None else posterior(whole)
 
-    optima_of_whole_landscape(whole, steps, 0)
+    optima_of_whole_landscape(whole, Ending(where=steps), 0)
     more = [f"way.0.{LINES.stop + part}.some" for part in range(BACK)]
     assert [name for name in begun if name and name.startswith("way.0")] == more
 
@@ -223,11 +223,11 @@ def test_an_interrupted_search_goes_on_with_the_next_lines(whole, far):
 
     interrupted = 3 * DRAWS + 1
     with pytest.raises(KeyboardInterrupt):
-        optima_of_whole_landscape(whole, steps, 0, kept.cached)
+        optima_of_whole_landscape(whole, Ending(kept.cached, where=steps), 0)
     assert len(kept) == 3
     last, interrupted = begun[-1], 0
     begun.clear()
-    optima_of_whole_landscape(whole, steps, 0, kept.cached)
+    optima_of_whole_landscape(whole, Ending(kept.cached, where=steps), 0)
     np.testing.assert_array_equal(begun[0], last)
 
 
@@ -246,7 +246,7 @@ def test_ways_leave_the_best_optimum_with_few_lines_and_go_down_again(whole, mon
             begun.append((drawn[-1], x))
         return exact
 
-    optima_of_whole_landscape(whole, steps, 0)
+    optima_of_whole_landscape(whole, Ending(where=steps), 0)
     again = begun[1:]
     assert [lines for lines, _ in again] == [AGAIN[k] for k in range(1, STARTS[0])]
     assert all(x is exact.mean for _, x in again)
@@ -258,7 +258,7 @@ def test_starts_that_do_not_agree_end(whole, far):
     def steps(of, x, attempt, name, known, goal):
         return far if name in others else exact
 
-    optima, ways = optima_of_whole_landscape(whole, steps, 0)
+    optima, ways = optima_of_whole_landscape(whole, Ending(where=steps), 0)
     assert ways == 1
     assert optima.starts == STARTS[1]
     assert optima.fits

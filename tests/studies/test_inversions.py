@@ -32,7 +32,8 @@ from disorder_landscape.inference.optimum import optimum_at
 from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.measurement import empty_measurement, simulated
-from disorder_landscape.inference.search.few_unknowns import usable_network_features
+from disorder_landscape.inference.search.network_features import network_features
+from disorder_landscape.inference.search.regression_rounds import RoundSettings
 from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED
 from disorder_landscape.model.parameters import Nanowire
 from disorder_landscape.studies import inversions, runner, unmodelled
@@ -228,7 +229,7 @@ def test_the_table_of_more_components_has_a_row_for_each_noise(tmp_path):
 def test_the_network_of_thirty_components_knows_something_of_fresh_wires():
     """It is asked on its own points of the grid, of wires and errors that it has not seen."""
     observation, _ = measured_wire(load_study("components").plan.grid(30), noise=0.001, index=0)
-    features = usable_network_features(model_of(shipped_model(THIRTY)), observation)
+    features = network_features(model_of(shipped_model(THIRTY)), observation, RoundSettings.share)
     assert features is not None
     assert features.on_grid.data.size == observation.data.size / 4
     prior, rng = observation.unknowns.prior, np.random.default_rng(0)

@@ -13,19 +13,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from disorder_landscape.inference.checkpoint import Cache, cached_gaussian, uncached
 from disorder_landscape.inference.optimum import Optimum, add, best, optimum_at
 from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.posterior.samples import posterior_samples
 from disorder_landscape.inference.problem.observation import Observation
-from disorder_landscape.inference.search.gauss_newton import gauss_newton
-from disorder_landscape.inference.stages import Report, no_report
+from disorder_landscape.inference.search.steps import Steps
+from disorder_landscape.inference.stages import IMPORTANCE_SAMPLING, within
 from disorder_landscape.model.parameters import FloatArray
 
 TURNS = 10
@@ -52,9 +50,7 @@ def best_effort(
     observation: Observation,
     outcome: Outcome,
     seed: Sequence[int],
-    cache: Cache = uncached,
-    step: Report = no_report,
-    sampling: Report = no_report,
+    steps: Steps,
 ) -> BestEffort:
     """Return what explains the data best if their errors include the discrepancy.
 
@@ -65,24 +61,23 @@ def best_effort(
         What its inversion has come to. If that explains the data, it is returned as it is.
     seed : sequence of int
         Of the samples.
-    cache : callable, optional
-        `Checkpoint.cached`.
-    step, sampling : callable, optional
-        Called before each step, and after each iteration of importance sampling.
+    steps : Steps
     """
     if outcome.best.fits:
         return BestEffort(observation, outcome, True)
+    last = outcome.attempts - 1
     optima = sorted(outcome.optima, key=lambda one: one.objective)[:KEPT]
     with_errors, is_settled = observation, False
     for turn in range(TURNS):
         before = with_errors.noise
         errors = errors_of(observation, best(optima))
         with_errors = replace(observation, noise=errors)
-        optima = _optima(with_errors, optima, cache, f"discrepancy.{turn}", step)
+        optima = _optima(with_errors, optima, steps, last, f"discrepancy.{turn}")
         is_settled = np.allclose(before, errors, rtol=SETTLED, atol=0.0)
         if is_settled:
             break
-    drawn = posterior_samples(with_errors, optima, seed, cache, sampling)
+    report = within(steps.progress, last, IMPORTANCE_SAMPLING)
+    drawn = posterior_samples(with_errors, optima, seed, steps.cache, report)
     found = Outcome(optima, drawn, outcome.attempts, outcome.rounds)
     return BestEffort(with_errors, found, is_settled and found.is_posterior)
 
@@ -116,12 +111,11 @@ def discrepancy_of(observation: Observation, effort: BestEffort) -> xr.DataArray
 
 
 def _optima(
-    observation: Observation, starts: Sequence[Optimum], cache: Cache, name: str, step: Report
+    observation: Observation, starts: Sequence[Optimum], steps: Steps, attempt: int, name: str
 ) -> list[Optimum]:
     """Return the optima to which steps from others lead, each once."""
     found: list[Optimum] = []
     for k, start in enumerate(starts):
-        make = partial(gauss_newton, observation, start.answer.mean, step)
-        end = cached_gaussian(cache, f"{name}.{k}", make)
+        end = steps.end(observation, start.answer.mean, attempt, f"{name}.{k}")
         add(observation, found, optimum_at(observation, end, start.found_by))
     return found

@@ -28,21 +28,11 @@ from disorder_landscape.inference.optimum import chi_square_excess
 from disorder_landscape.inference.problem.observation import Observation, overall_misfit
 from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.result import result_of
-from disorder_landscape.inference.search.few_unknowns import (
-    InversionSettings,
-    usable_network_features,
-    usual_settings,
-)
+from disorder_landscape.inference.search.few_unknowns import InversionSettings
 from disorder_landscape.inference.search.first_guess import on_grid_of_network
-from disorder_landscape.inference.stages import (
-    GAUSS_NEWTON,
-    IMPORTANCE_SAMPLING,
-    MAPS,
-    Progress,
-    Step,
-    silent,
-    within,
-)
+from disorder_landscape.inference.search.steps import Steps
+from disorder_landscape.inference.stages import MAPS, Progress, Step, silent
+from disorder_landscape.inference.streams import Stream
 from disorder_landscape.inference.verdict import verdict
 from disorder_landscape.learning.model import TrainedModel, load_model
 
@@ -143,19 +133,13 @@ def infer(
     seed = whole_number_in("seed", seed, 0, 2**31)
     discrepancy = whether("discrepancy", discrepancy)
     trained, start = _network(observation, prior, network)
-    settings = settings or usual_settings(usable_network_features(trained, observation))
     fingerprint = _fingerprint(observation, trained, repr((seed, settings, start)))
-    found_before = Checkpoint(checkpoint, fingerprint)
+    steps = Steps(Checkpoint(checkpoint, fingerprint).cached, progress)
     with threadpool_limits(1, user_api="blas"):  # else the simulation's threads wait for others
-        found = invert(observation, trained, seed, settings, progress, found_before)
+        found = invert(observation, trained, seed, settings, steps)
         said, effort = verdict(observation, found), BestEffort(observation, found, True)
         if discrepancy:
-            last = found.attempts - 1
-            reports = (
-                within(progress, last, stage) for stage in (GAUSS_NEWTON, IMPORTANCE_SAMPLING)
-            )
-            seeds = [seed, 2**31 + 4]
-            effort = best_effort(observation, found, seeds, found_before.cached, *reports)
+            effort = best_effort(observation, found, [seed, Stream.DISCREPANCY], steps)
             found = effort.outcome
         spread = observation.unknowns.site_std(found.answer.covariance)
         misfit = overall_misfit(observation, found.best.data)

@@ -9,34 +9,24 @@ has too few effective samples.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
 
 import numpy as np
 
-from disorder_landscape.inference.checkpoint import Cache, Checkpoint, cached_gaussian
-from disorder_landscape.inference.optimum import Optimum
 from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.posterior.samples import posterior_samples
-from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.search.few_unknowns import (
     InversionSettings,
     starts_of_few_unknowns,
 )
-from disorder_landscape.inference.search.gauss_newton import Goal, gauss_newton
 from disorder_landscape.inference.search.optima import Optima
 from disorder_landscape.inference.search.starts import MOST_STARTS
+from disorder_landscape.inference.search.steps import Steps
 from disorder_landscape.inference.search.whole_landscape import optima_of_whole_landscape
-from disorder_landscape.inference.stages import (
-    GAUSS_NEWTON,
-    IMPORTANCE_SAMPLING,
-    Progress,
-    silent,
-    within,
-)
+from disorder_landscape.inference.stages import IMPORTANCE_SAMPLING, within
+from disorder_landscape.inference.streams import Stream
 from disorder_landscape.inference.verdict import CONVERGED, verdict
 from disorder_landscape.learning.model import TrainedModel
-from disorder_landscape.model.parameters import FloatArray
 
 
 def invert(
@@ -44,8 +34,7 @@ def invert(
     model: TrainedModel | None,
     seed: int = 0,
     settings: InversionSettings | None = None,
-    progress: Progress = silent,
-    checkpoint: Checkpoint | None = None,
+    steps: Steps | None = None,
 ) -> Outcome:
     """Return the optima of the posterior that explain the data best, and samples of it.
 
@@ -54,32 +43,29 @@ def invert(
     observation : Observation
     model : TrainedModel, optional
         The network that guesses, for the first attempt. Where it needs few of the data, its
-        predictions serve as features of the rounds, too (`few_unknowns.usable_network_features`).
+        predictions serve as features of the rounds, too (`search.network_features`).
     seed : int
     settings : InversionSettings, optional
         Of few unknowns; the whole landscape has its own search.
-    progress : callable
-    checkpoint : Checkpoint, optional
-        What an interrupted run has found.
+    steps : Steps, optional
+        Whom they tell, and what an interrupted run has found.
     """
-    cache = (checkpoint if checkpoint is not None else Checkpoint()).cached
-    steps = partial(_steps, cache, progress)
-    seeds = [seed, 2**31 + 2]
+    steps = steps or Steps()
+    seeds = [seed, Stream.IMPORTANCE_SAMPLES]
     if observation.unknowns.is_whole_landscape:
-        optima, attempts = optima_of_whole_landscape(observation, steps, seed, cache)
+        optima, attempts = optima_of_whole_landscape(observation, steps, seed)
         optima.look_at_mirror_images(attempts - 1)
-        return _outcome(observation, optima, attempts, 0, seeds, progress, cache)
-    found = starts_of_few_unknowns(observation, model, steps, seed, settings, progress, cache)
-    starts, attempts, rounds = found
+        return _outcome(observation, optima, attempts, 0, seeds)
+    starts, attempts, rounds = starts_of_few_unknowns(observation, model, steps, seed, settings)
     optima = starts.optima
     while True:
         optima.look_at_mirror_images(attempts - 1)
-        outcome = _outcome(observation, optima, attempts, rounds, seeds, progress, cache)
+        outcome = _outcome(observation, optima, attempts, rounds, seeds)
         is_enough = verdict(observation, outcome) == CONVERGED or not optima.is_wide
         if is_enough or optima.starts >= MOST_STARTS:
             return outcome
         seeds = [*seeds[:2], optima.starts]
-        starts.go_on(np.random.default_rng([seed, 2**31 + 5, optima.starts]))
+        starts.go_on(np.random.default_rng([seed, Stream.MORE_STARTS, optima.starts]))
 
 
 def _outcome(
@@ -88,28 +74,8 @@ def _outcome(
     attempts: int,
     rounds: int,
     seeds: Sequence[int],
-    progress: Progress,
-    cache: Cache,
 ) -> Outcome:
     """Return what optima come to, with samples where the posterior is no normal distribution."""
-    report = within(progress, attempts - 1, IMPORTANCE_SAMPLING)
-    drawn = posterior_samples(observation, optima.found, seeds, cache, report)
+    report = within(optima.steps.progress, attempts - 1, IMPORTANCE_SAMPLING)
+    drawn = posterior_samples(observation, optima.found, seeds, optima.steps.cache, report)
     return Outcome(tuple(optima.found), drawn, attempts, rounds)
-
-
-def _steps(
-    cache: Cache,
-    progress: Progress,
-    observation: Observation,
-    x: FloatArray,
-    attempt: int,
-    name: str | None,
-    known: Sequence[Optimum],
-    goal: Goal,
-) -> Gaussian:
-    """Return where Gauss–Newton steps from x (unknown,) end."""
-    report = within(progress, attempt, GAUSS_NEWTON)
-    make = partial(gauss_newton, observation, x, report, known, goal)
-    if name is None:
-        return make()
-    return cached_gaussian(cache, f"gauss_newton.{name}", make)

@@ -21,6 +21,7 @@ from disorder_landscape.inference.problem.distributions import Distribution, Uni
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.problem.parameters import BY_NAME
 from disorder_landscape.inference.problem.unknowns import Unknowns
+from disorder_landscape.inference.streams import Stream
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.model.quantities import AXES, CONDUCTANCES, with_units
 
@@ -41,7 +42,7 @@ def result_of(observation: Observation, outcome: Outcome, samples: int, seed: in
     m, unknowns = observation.measurement, observation.unknowns
     answer = outcome.answer
     mean, covariance = answer.mean, answer.covariance
-    X = outcome.draw(np.random.default_rng([seed, 2**31 + 1]), samples)
+    X = outcome.draw(np.random.default_rng([seed, Stream.SAMPLES]), samples)
     maps = fine_grids(m.mu, m.B)
     most_probable = outcome.best.answer.mean[None]
     T_IV = visibility(observation, np.concatenate([most_probable, X]), maps)

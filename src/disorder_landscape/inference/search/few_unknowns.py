@@ -12,12 +12,12 @@ from functools import partial
 
 import numpy as np
 
-from disorder_landscape.inference.checkpoint import Cache, cached_gaussian
+from disorder_landscape.inference.checkpoint import cached_gaussian
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.search.first_guess import network_guess
-from disorder_landscape.inference.search.network_features import NetworkFeatures, network_features
-from disorder_landscape.inference.search.optima import Optima, Steps
+from disorder_landscape.inference.search.network_features import network_features
+from disorder_landscape.inference.search.optima import Optima
 from disorder_landscape.inference.search.regression_rounds import (
     WITH_NETWORK_FEATURES,
     Round,
@@ -25,7 +25,9 @@ from disorder_landscape.inference.search.regression_rounds import (
     regression_rounds,
 )
 from disorder_landscape.inference.search.starts import Starts
-from disorder_landscape.inference.stages import ROUND, Progress, Step
+from disorder_landscape.inference.search.steps import Steps
+from disorder_landscape.inference.stages import ROUND, Step
+from disorder_landscape.inference.streams import Stream
 from disorder_landscape.learning.model import TrainedModel
 
 TRIED_FROM = 0.15
@@ -51,24 +53,24 @@ def starts_of_few_unknowns(
     steps: Steps,
     seed: int,
     settings: InversionSettings | None,
-    progress: Progress,
-    cache: Cache,
 ) -> tuple[Starts, int, int]:
     """Return starts that have led to optima, and how many attempts and rounds these have taken."""
-    features = usable_network_features(model, observation)
-    settings = settings or usual_settings(features)
+    share = RoundSettings.share if settings is None else settings.rounds.share
+    features, cache = network_features(model, observation, share), steps.cache
+    if settings is None:
+        settings = InversionSettings(RoundSettings() if features is None else WITH_NETWORK_FEATURES)
     prior, guess = observation.unknowns.prior, None
     if model is not None:
-        rng = np.random.default_rng([seed, 2**31])
+        rng = np.random.default_rng([seed, Stream.GUESS])
         guess = cached_gaussian(cache, "guess", partial(network_guess, model, observation, rng))
-    rng = np.random.default_rng([seed, 2**31 + 3])
-    starts = Starts(Optima(observation, steps), rng, cache)
+    rng = np.random.default_rng([seed, Stream.SEARCH])
+    starts = Starts(Optima(observation, steps), rng)
     count = 0
     for number in range(settings.attempts):
         start = guess if guess is not None and number == 0 else prior
         more = _with_more_samples(settings, number)
         rounds = regression_rounds(observation, start, [seed, number], more, cache, features)
-        count += _search(starts, start, rounds, seed, number, progress)
+        count += _search(starts, start, rounds, seed, number)
         if starts.optima.is_done:
             break
     return starts, number + 1, count
@@ -80,7 +82,6 @@ def _search(
     rounds: Iterator[Round],
     seed: int,
     number: int,
-    progress: Progress,
 ) -> int:
     """Add the optima of one attempt, and return how many rounds it has taken."""
     optima, found, count = starts.optima, start, 0
@@ -102,20 +103,8 @@ def _search(
             else:
                 starts.start_at_best_of_draws(start, number, rng)
             return count
-        progress(Step(number, ROUND, count, one.misfit, one.spread))
+        optima.steps.progress(Step(number, ROUND, count, one.misfit, one.spread))
         found, count, spread = one.distribution, count + 1, one.spread
-
-
-def usual_settings(features: NetworkFeatures | None) -> InversionSettings:
-    """Return the settings of an inversion with features from a network, or without."""
-    return InversionSettings(RoundSettings() if features is None else WITH_NETWORK_FEATURES)
-
-
-def usable_network_features(
-    model: TrainedModel | None, observation: Observation
-) -> NetworkFeatures | None:
-    """Return a network as a source of features, if it needs no more data than the first rounds."""
-    return network_features(model, observation, RoundSettings.share)
 
 
 def _with_more_samples(settings: InversionSettings, number: int) -> RoundSettings:

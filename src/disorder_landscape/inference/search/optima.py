@@ -10,7 +10,6 @@ than once.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 from disorder_landscape.inference.optimum import (
@@ -25,9 +24,9 @@ from disorder_landscape.inference.optimum import (
     shares,
     unseen,
 )
-from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.search.gauss_newton import Goal, is_near
+from disorder_landscape.inference.search.steps import Steps
 from disorder_landscape.inference.verdict import UNSEEN, is_surely_right
 from disorder_landscape.model.parameters import FloatArray
 
@@ -45,10 +44,6 @@ STARTS_WHEN_WIDE = 16, 64
 0.1 e²/h eleven converge with 32 starts and ten iterations of importance sampling, and sixteen with
 64 and 16.)"""
 
-Steps = Callable[[Observation, FloatArray, int, str | None, Sequence[Optimum], Goal], Gaussian]
-"""Gauss–Newton steps of an observation, from a start, in an attempt, by a name (of what an
-interrupted run remembers) or none, which may end at known optima, to a goal."""
-
 
 @dataclass(eq=False)
 class Optima:
@@ -57,7 +52,7 @@ class Optima:
     Parameters
     ----------
     observation : Observation
-    steps : callable
+    steps : Steps
     when_wide : pair of int
         How many starts there are at least and at most where the posterior may have several maxima.
     """
@@ -113,7 +108,7 @@ class Optima:
 
     def end_at(self, x: FloatArray, attempt: int, name: str, goal: Goal) -> int:
         """Do so for a start that has been counted, and return which of those found it is."""
-        end = self.steps(self.observation, x, attempt, name, self.found, goal)
+        end = self.steps.end(self.observation, x, attempt, name, self.found, goal)
         return add(self.observation, self.found, optimum_at(self.observation, end, (attempt,)))
 
     def of(self, observation: Observation) -> Optima:
@@ -127,9 +122,7 @@ class Optima:
         for k, one in enumerate(self.found):
             answer = one.answer
             if self.fits and share[k] > NEGLIGIBLE:
-                answer = self.steps(
-                    observation, answer.mean, one.found_by[0], f"all.{k}", (), "optimum"
-                )
+                answer = self.steps.end(observation, answer.mean, one.found_by[0], f"all.{k}")
             add(observation, found, optimum_at(observation, answer, one.found_by))
         return replace(self, observation=observation, found=found)
 
@@ -148,7 +141,7 @@ class Optima:
                 continue
             if not is_noise(chi_square_excess(observation, observation.simulate(x[None])[0])):
                 continue
-            end = self.steps(observation, x, attempt, f"{self.starts}.mirror.{k}", (), "optimum")
+            end = self.steps.end(observation, x, attempt, f"{self.starts}.mirror.{k}")
             image = optimum_at(observation, end, one.found_by)
             if not any(same_answer(observation, other, image) for other in self.found):
                 self.found.append(image)

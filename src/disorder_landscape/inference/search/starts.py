@@ -10,7 +10,6 @@ from dataclasses import InitVar, dataclass, field
 
 import numpy as np
 
-from disorder_landscape.inference.checkpoint import Cache, uncached
 from disorder_landscape.inference.optimum import Optimum, best, optimum_at
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.observation import Observation
@@ -48,13 +47,10 @@ class Starts:
         To which the optima are added.
     rng : Generator
         Which data come first.
-    cache : callable, optional
-        `Checkpoint.cached`.
     """
 
     optima: Optima
     rng: InitVar[np.random.Generator]
-    cache: Cache = uncached
     some: Observation = field(init=False)
     _on_some: list[tuple[Optimum, int | None]] = field(default_factory=list)
     """Optima on these data, and which one of all data they lead to, if any."""
@@ -115,7 +111,7 @@ class Starts:
         optima, steps = self.optima, self.optima.steps
         name = optima.count_start(attempt)
         known = [one for one, _ in self._on_some]
-        end = steps(self.some, x, attempt, f"{name}.some", known, "place")
+        end = steps.end(self.some, x, attempt, f"{name}.some", known, "place")
         for one, leads_to in self._on_some:
             if is_near(one, end.mean):
                 if leads_to is not None:
@@ -131,4 +127,4 @@ class Starts:
         def make() -> dict[str, list[float]]:
             return {"x": best_of_draws(self.optima.observation, about, rng).tolist()}
 
-        return np.array(self.cache(f"start.{self.optima.starts}", make)["x"])
+        return np.array(self.optima.steps.cache(f"start.{self.optima.starts}", make)["x"])

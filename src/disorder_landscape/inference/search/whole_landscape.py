@@ -27,11 +27,12 @@ from typing import Any
 
 import numpy as np
 
-from disorder_landscape.inference.checkpoint import Cache, uncached
 from disorder_landscape.inference.optimum import Optimum, best, chi_square_excess, is_noise
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.search.gauss_newton import Goal
-from disorder_landscape.inference.search.optima import Optima, Steps
+from disorder_landscape.inference.search.optima import Optima
+from disorder_landscape.inference.search.steps import Steps
+from disorder_landscape.inference.streams import Stream
 from disorder_landscape.model.parameters import FloatArray
 
 FEW = 24, 5, 7
@@ -57,14 +58,14 @@ STARTS = 3, 8
 
 
 def optima_of_whole_landscape(
-    observation: Observation, steps: Steps, seed: int, cache: Cache = uncached
+    observation: Observation, steps: Steps, seed: int
 ) -> tuple[Optima, int]:
     """Return the optima to which steps over lower and lower μ lead, and how many ways down."""
     in_fields = _in_fields(observation)
     some = in_fields.on_few_points(*MORE)
     optima = Optima(in_fields, steps, STARTS)
     for number in range(WAYS_DOWN):
-        way = _Way(in_fields, some, steps, seed, (number,), cache)
+        way = _Way(in_fields, some, steps, seed, (number,))
         x, goal = way.down()
         optima.start_at(x, number, goal)
         until = optima.starts + STARTS[1] - 1
@@ -89,7 +90,6 @@ class _Way:
     steps: Steps
     seed: int
     name: tuple[int, ...]
-    cache: Cache
 
     def down(self) -> tuple[FloatArray, Goal]:
         """Go down from V = 0 or a draw of the prior."""
@@ -111,7 +111,7 @@ class _Way:
             if not foretells:
                 break
             name = f"{self._prefix}.{part}.some"
-            x = self.steps(self.some, x, self.name[0], name, (), "better").mean
+            x = self.steps.end(self.some, x, self.name[0], name, goal="better").mean
             if is_noise(_excess(self.some, x)):
                 return x, "optimum"
             x, foretells = self._foretell(LINES[-1], x, part)
@@ -120,7 +120,7 @@ class _Way:
     def _foretell(self, lines: int, x: FloatArray, part: int) -> tuple[FloatArray, bool]:
         """Take steps with draws of so many lines until some need none; whether they do."""
         find = partial(self._until_foretold, lines, x, self._rng(part))
-        found = self.cache(f"{self._prefix}.{part}", find)
+        found = self.steps.cache(f"{self._prefix}.{part}", find)
         return np.array(found["x"]), found["foretells"]
 
     def _until_foretold(
@@ -144,14 +144,14 @@ class _Way:
         return self.observation.on_random_points(lines / FEW[0], (lines, *FEW[1:]), rng)
 
     def _nearer(self, part: Observation, x: FloatArray) -> FloatArray:
-        return self.steps(part, x, self.name[0], None, (), "few").mean
+        return self.steps.end(part, x, self.name[0], goal="few").mean
 
     @property
     def _prefix(self) -> str:
         return ".".join(["way", *map(str, self.name)])
 
     def _rng(self, *part: int) -> np.random.Generator:
-        return np.random.default_rng([self.seed, 2**31 + 3, *self.name, *part])
+        return np.random.default_rng([self.seed, Stream.SEARCH, *self.name, *part])
 
 
 def _in_fields(observation: Observation) -> Observation:
