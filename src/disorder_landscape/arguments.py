@@ -36,7 +36,8 @@ def require(condition: bool, name: str, must: str, but: str) -> None:
 def shown(value: object) -> str:
     """Return a value in one short line."""
     try:
-        text = " ".join(repr(value).split())
+        plain = value.item() if isinstance(value, np.generic) else value
+        text = " ".join(repr(plain).split())
     except ValueError:  # Python does not write numbers of so many digits
         return "a number of thousands of digits"
     return text if len(text) <= SHOWN else f"{text[:SHOWN]}…"
@@ -129,7 +130,10 @@ def grid_in(
     require(grid.ndim == 1, name, must, f"it has shape {grid.shape}")
     require(grid.size > 0, name, must, "it is empty")
     require(bool(np.isfinite(grid).all()), name, must, "it holds NaN or infinity")
-    require(bool((grid[1:] > grid[:-1]).all()), name, must, "it is not sorted in increasing order")
+    (twice,) = np.nonzero(grid[1:] == grid[:-1])
+    but = "it is not sorted in increasing order"
+    but = f"{grid[twice[0]]:.9g} {unit} occurs twice" if twice.size else but
+    require(bool((grid[1:] > grid[:-1]).all()), name, must, but)
     for value in (grid[0], grid[-1]):
         within = f"lie between {low:.9g} and {high:.9g} {unit}"
         require(low <= value <= high, name, within, f"it reaches {value:.9g}")

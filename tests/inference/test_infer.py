@@ -18,7 +18,8 @@ from disorder_landscape.files import read_json
 from disorder_landscape.inference.given import observation_of
 from disorder_landscape.inference.noise_hints import noise_hint, stated_noise_hint
 from disorder_landscape.inference.problem.distributions import Uniform
-from disorder_landscape.inference.problem.measurement import measurement_of, settings_of
+from disorder_landscape.inference.problem.measured_dataset import measurement_of
+from disorder_landscape.inference.problem.measurement import settings_of
 from disorder_landscape.inference.problem.noise import noise_of_channels, parse_noise, stated_noise
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.report import summary
@@ -284,7 +285,7 @@ def test_the_seed_decides(measured, inferred):
         (lambda G: G.isel(mu=0, drop=True), {}, "it lacks mu"),
         (lambda G: G.drop_vars(CONDUCTANCES), {}, "it lacks G_LL, G_RR, G_LR, G_RL"),
         (lambda G: G.isel(mu=slice(5)), {"network": True}, "it differs in mu"),
-        (lambda G: G.isel(B=[0, 1, 1, 2, 3, 4]), {}, "B must be .* not sorted"),
+        (lambda G: G.isel(B=[0, 1, 1, 2, 3, 4]), {}, "B must be .* 0.16 T occurs twice"),
         (lambda G: G.isel(mu=slice(5)), {"network": True}, "--from-prior"),
         (lambda G: G.assign_attrs(g=14.7), {}, "g must be 25, as in the prior, .* states 14.7"),
         (lambda G: G.assign_attrs(delta0=0.2), {}, "delta0 must be 0.12"),

@@ -16,7 +16,8 @@ from disorder_landscape.inference.plot_maps import (
     measured_channels,
     sure_gap,
 )
-from disorder_landscape.inference.problem.measurement import PAPERS_SETTINGS, measurement_of
+from disorder_landscape.inference.problem.measured_dataset import measurement_of
+from disorder_landscape.inference.problem.measurement import PAPERS_SETTINGS
 from disorder_landscape.inference.report import sentences_on, topological_sentence, verdict_sentence
 from disorder_landscape.inference.verdict import NOT_CONVERGED, NOT_DESCRIBED
 from disorder_landscape.model.quantities import CONDUCTANCES

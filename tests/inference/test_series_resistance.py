@@ -9,7 +9,7 @@ from hypothesis.extra.numpy import arrays
 
 import disorder_landscape as dl
 from disorder_landscape import ArgumentError
-from disorder_landscape.inference.problem.measurement import QUANTUM
+from disorder_landscape.inference.problem.measured_numbers import QUANTUM
 from disorder_landscape.inference.problem.series_resistance import in_series
 from disorder_landscape.model.quantities import CONDUCTANCES
 

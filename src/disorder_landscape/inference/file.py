@@ -11,7 +11,8 @@ import xarray as xr
 from disorder_landscape.dataset.store import read_dataset, write_dataset
 from disorder_landscape.inference.infer import infer
 from disorder_landscape.inference.plot import plot_inference
-from disorder_landscape.inference.problem.measurement import PAPERS_SETTINGS, measurement_of
+from disorder_landscape.inference.problem.measured_dataset import measurement_of
+from disorder_landscape.inference.problem.measurement import PAPERS_SETTINGS
 from disorder_landscape.inference.settings import ASKED, Settings, asked_for
 from disorder_landscape.inference.stages import Progress, silent
 from disorder_landscape.locks import kept_from_others

@@ -9,12 +9,9 @@ import xarray as xr
 
 from disorder_landscape.arguments import require, shown
 from disorder_landscape.config import DatasetConfig
-from disorder_landscape.inference.problem.measurement import (
-    PAPERS_SETTINGS,
-    check_carried,
-    measurement_of,
-    settings_of,
-)
+from disorder_landscape.inference.problem.measured_dataset import measurement_of
+from disorder_landscape.inference.problem.measured_numbers import check_carried
+from disorder_landscape.inference.problem.measurement import PAPERS_SETTINGS, settings_of
 from disorder_landscape.inference.problem.noise import noise_of_channels, stated_noise
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.problem.prior import Prior

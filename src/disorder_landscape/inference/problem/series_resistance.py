@@ -10,12 +10,9 @@ import numpy as np
 import xarray as xr
 
 from disorder_landscape.arguments import number_in, require
-from disorder_landscape.inference.problem.measurement import (
-    PAPERS_SETTINGS,
-    QUANTUM,
-    measurement_of,
-    with_axes,
-)
+from disorder_landscape.inference.problem.measured_dataset import measurement_of, with_axes
+from disorder_landscape.inference.problem.measured_numbers import QUANTUM
+from disorder_landscape.inference.problem.measurement import PAPERS_SETTINGS
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.model.quantities import CONDUCTANCES
 

@@ -18,11 +18,8 @@ from disorder_landscape.inference.inferred import (
     samples_of,
     usual_settings_of,
 )
-from disorder_landscape.inference.problem.measurement import (
-    Measurement,
-    check_wire,
-    measurement_of,
-)
+from disorder_landscape.inference.problem.measured_dataset import check_wire, measurement_of
+from disorder_landscape.inference.problem.measurement import Measurement
 from disorder_landscape.inference.verification.comparison import LEAST_SAMPLES
 from disorder_landscape.inference.verification.controls import (
     control_wires,

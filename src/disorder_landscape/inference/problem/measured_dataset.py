@@ -1,0 +1,175 @@
+"""A dataset as a measurement: which variables, dims and attributes it must have, and may have."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from disorder_landscape.arguments import number_in, require
+from disorder_landscape.inference.problem.measured_numbers import (
+    GATE_RANGE,
+    axis_of,
+    biases_of,
+    conductances_of,
+)
+from disorder_landscape.inference.problem.measurement import Measurement
+from disorder_landscape.model.hamiltonian import FULL_TURN
+from disorder_landscape.model.parameters import (
+    PARAMETER_RANGES,
+    STATED,
+    Nanowire,
+    checked_barrier,
+    checked_temperature,
+)
+from disorder_landscape.model.quantities import AXES, CONDUCTANCES
+
+FIXED = tuple(name for name in STATED if name not in ("alpha", "lead_mu"))
+"""Those that all wires of this program's networks have in common."""
+AS_THE_WIRE = {"lead_alpha": "alpha", "lead_g": "g", "parent_dissipation": "dissipation"}
+"""Parameters of leads and parent that are, in every inversion, those of the wire."""
+SETTINGS = ("theta", "barrier", "temperature")
+"""Attributes that a measurement must have: in radians, in meV (left, right), in K."""
+GATE = "gate"
+"""The first axis where it is a gate voltage."""
+FLAT = "pandas makes axes of columns: table.set_index([{}]).to_xarray()"
+
+
+def measurement_of(dataset: xr.Dataset, usual: Mapping[str, Any] | None = None) -> Measurement:
+    """Return a measurement of one wire, checked.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        G_LL … G_RL in e²/h, dims (mu, B, bias) in any order, or gate in place of mu, and the
+        attributes SETTINGS, as `conductance` returns them. One number is enough; what is missing is
+        NaN, and biases at which nothing was measured are left out. An axis of one value may be a
+        scalar coordinate.
+    usual : mapping, optional
+        Settings where the attributes are missing.
+
+    Raises
+    ------
+    ArgumentError
+        If it lacks a variable, a dim or an attribute, has several wires, holds infinity, is in
+        other units, or states that the wire is another than the models'.
+    """
+    is_dataset = isinstance(dataset, xr.Dataset)
+    require(is_dataset, "measurement", "be a Dataset", f"it is {type(dataset).__name__!r}")
+    dataset = with_axes(dataset)
+    axes = _axes_of(dataset)
+    given = _given(dataset, axes)
+    settings = {**(usual or {}), **dataset.attrs}
+    missing = [name for name in SETTINGS if name not in settings]
+    states = f"state {', '.join(SETTINGS)} as attributes"
+    require(not missing, "measurement", states, f"it lacks {', '.join(missing)}")
+    gate_unit = ""
+    if axes[0] == GATE:
+        gate_unit = str(dataset[GATE].attrs.get("units", ""))
+        values = dataset[GATE].to_numpy()
+        dataset = dataset.rename(gate="mu").assign_coords(mu=("mu", values))  # in any unit
+    dataset = dataset.sortby(list(AXES))
+    G = conductances_of(dataset, given)
+    there, bias = np.isfinite(G).any(axis=(0, 1, 3)), biases_of(dataset)
+    return Measurement(
+        G=G[:, :, there],
+        mu=axis_of(dataset, "mu", GATE_RANGE if axes[0] == GATE else 1e3),
+        B=axis_of(dataset, "B", 100.0),
+        bias=bias[there],
+        left_out=bias[~there],
+        theta=number_in("theta", settings["theta"], -FULL_TURN, FULL_TURN, "radians"),
+        barrier=checked_barrier(settings["barrier"]),
+        temperature=checked_temperature(settings["temperature"]),
+        axis=axes[0],
+        gate_unit=gate_unit,
+        stated=_stated(dataset.attrs),
+    )
+
+
+def _axes_of(dataset: xr.Dataset) -> tuple[str, ...]:
+    """Return the names of the axes: mu or gate, B and bias.
+
+    Raises
+    ------
+    ArgumentError
+        If one is missing, or no axis.
+    """
+    axes = (
+        (GATE, *AXES[1:]) if GATE in dataset.variables and "mu" not in dataset.variables else AXES
+    )
+    missing = [name for name in axes if name not in dataset.variables]
+    has = ", ".join(map(str, dataset.dims)) or "no dims"
+    must = "hold the conductances of one wire over mu (or gate), B and bias"
+    require(not missing, "measurement", must, f"it lacks {', '.join(missing)}, and has {has}")
+    for name in axes:
+        dims = dataset[name].dims
+        is_table = len(dims) == 1 and dims != (name,)
+        but = f"it is along {dims[0]}" if is_table else "it is something else"
+        how = f" ({FLAT.format(', '.join(map(repr, axes)))})" if is_table else ""
+        is_axis = dims == (name,) and dataset[name].dtype.kind in "fiu"
+        require(is_axis, name, "be numbers along their own dimension", but + how)
+    return axes
+
+
+def _given(dataset: xr.Dataset, axes: Sequence[str]) -> list[str]:
+    """Return the names of the conductances that are given.
+
+    Raises
+    ------
+    ArgumentError
+        If there are none, or if one has other dims than the axes.
+    """
+    given = [name for name in CONDUCTANCES if name in dataset.variables]
+    must = f"hold the conductances of one wire over {axes[0]}, B and bias"
+    require(bool(given), "measurement", must, f"it lacks {', '.join(CONDUCTANCES)}")
+    for name in given:
+        dims = sorted(map(str, dataset[name].dims))
+        but = f"the dims of {name} are {', '.join(dims)}"
+        require(dims == sorted(axes), "measurement", must, but)
+    return given
+
+
+def _stated(attrs: Mapping[Any, Any]) -> dict[str, float]:
+    """Return what attributes say of the device."""
+    stated = {
+        name: number_in(name, attrs[name], *PARAMETER_RANGES[name])
+        for name in STATED
+        if name in attrs
+    }
+    for name, of_wire in AS_THE_WIRE.items():
+        if name in attrs:
+            own = number_in(name, attrs[name], *PARAMETER_RANGES[name])
+            same = stated.setdefault(of_wire, own)
+            must = f"be the wire's {of_wire}, {same:g}, as in every inversion"
+            require(bool(np.isclose(own, same)), name, must, f"the measurement's is {own:g}")
+    if "temperature" in attrs:
+        stated["temperature"] = checked_temperature(attrs["temperature"])
+    if "barrier" in attrs:
+        stated["barrier_left"], stated["barrier_right"] = checked_barrier(attrs["barrier"])
+    return stated
+
+
+def check_wire(measurement: Measurement) -> None:
+    """Require that a measurement states the values of FIXED, where it states any.
+
+    Raises
+    ------
+    ArgumentError
+        If it states another, or is over gate voltages instead of μ.
+    """
+    on_mu = measurement.axis == "mu"
+    require(on_mu, "measurement", "be over mu in meV", "it is over gate, whose unit is not known")
+    for name in FIXED:
+        usual = getattr(Nanowire, name)
+        stated = measurement.stated.get(name, usual)
+        must = f"be {usual:g}, as in all simulations here"
+        require(bool(np.isclose(stated, usual)), name, must, f"the measurement's is {stated:g}")
+
+
+def with_axes(dataset: xr.Dataset) -> xr.Dataset:
+    """Return a dataset in which axes that are scalar coordinates have a dim of their own."""
+    names = AXES if "mu" in dataset.coords else ("gate", *AXES[1:])
+    scalars = [name for name in names if name in dataset.coords]
+    return dataset.expand_dims([name for name in scalars if dataset[name].ndim == 0])
