@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 
 from command_line import landscape
-from disorder_landscape import Nanowire, Prior, conductance
+from disorder_landscape import ArgumentError, Nanowire, Prior, conductance
 from disorder_landscape.chain import FIVE, shipped_model
 from disorder_landscape.model.quantities import CONDUCTANCES
 from disorder_landscape.potential_file import read_potential
@@ -135,6 +135,13 @@ def test_a_potential_is_read_as_spreadsheets_write_it(tmp_path, text):
     assert read_potential(path).tolist() == [0.1, 0.2, 0.3]
 
 
+@pytest.mark.parametrize("header", ["x (nm),V (ueV)", "V [µeV]", "V (V)"])
+def test_a_potential_in_another_unit_is_refused(tmp_path, header):
+    (tmp_path / "V.csv").write_text(f"{header}\n1,100\n2,200\n", "utf-8")
+    with pytest.raises(ArgumentError, match="in meV per site, .* its header says "):
+        read_potential(tmp_path / "V.csv")
+
+
 def test_a_wire_of_another_material_is_an_option_away(monkeypatch, capsys, tmp_path):
     (tmp_path / "V.csv").write_text("0.1\n0.2\n0.3\n0.4\n")
     output = tmp_path / "wire.nc"
@@ -142,7 +149,7 @@ def test_a_wire_of_another_material_is_an_option_away(monkeypatch, capsys, tmp_p
     more = ["--dissipation", 0.01, "--parent-dissipation", 0, "--B", 0.5, "--bias", 0]
     code, out, _ = landscape(monkeypatch, capsys, "simulate", *wire, *more, "-o", output)
     assert code == 0
-    assert out.startswith("4 sites; wrote ")
+    assert out.startswith("4 sites, V from 0.1 to 0.4 meV; wrote ")
     made = xr.open_dataset(output, engine="h5netcdf")
     given = Nanowire(
         [0.1, 0.2, 0.3, 0.4], 8.0, 0.026, 8.0, lead_mu=20, dissipation=0.01, parent_dissipation=0.0

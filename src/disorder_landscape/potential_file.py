@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from tokenize import TokenError
 
@@ -13,6 +14,8 @@ from disorder_landscape.model.parameters import MOST_SITES, FloatArray, checked_
 
 NOT_NUMBERS = (ValueError, EOFError, SyntaxError, TokenError, TypeError, OverflowError)
 """What NumPy raises for files that are damaged or something else."""
+UNIT = re.compile(r"[(\[]\s*(\w*eV|\w?V)\s*[)\]]")
+"""An energy or a voltage in brackets."""
 
 
 def read_potential(path: Path) -> FloatArray:
@@ -23,7 +26,7 @@ def read_potential(path: Path) -> FloatArray:
     path : Path
         .npy (a vector), .nc (the variable potential), or text with one site per line, the potential
         in the last comma-separated column, with or without a header line: one that ends with no
-        number, or begins with a comma, as those of pandas do.
+        number, or begins with a comma, as those of pandas do. A unit in brackets in it must be meV.
 
     Raises
     ------
@@ -62,9 +65,18 @@ def _read_text(path: Path) -> FloatArray:
         try:
             values.append(float(word))
         except ValueError:
-            if number != min(last):  # the first line may be a header
+            if number == min(last):  # the first line may be a header
+                _check_unit(word)
+            else:
                 message = f"line {number} ends with '{word}', which is no number"
                 raise ValueError(message) from None
     if len(values) < 2:
         raise ValueError("it holds fewer than two lines with a number, one for each site")
     return np.array(values)
+
+
+def _check_unit(header: str) -> None:
+    """Require that the unit which a column's header may state is meV."""
+    stated = UNIT.search(header)
+    if stated and stated[1] != "meV":
+        raise ValueError(f"its header says {stated[1]}")

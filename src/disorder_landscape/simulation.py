@@ -18,6 +18,7 @@ from disorder_landscape.model.parameters import (
     STATED,
     FloatArray,
     Nanowire,
+    check_leads,
 )
 from disorder_landscape.model.quantities import AXES, CONDUCTANCES, with_units
 from disorder_landscape.observables.conductance import Progress, conductance
@@ -95,7 +96,13 @@ def simulate_wire(
         Angle of the field relative to the wire in radians.
     progress : callable, optional
         As in `conductance`.
+
+    Raises
+    ------
+    ArgumentError
+        As `conductance`, or if nothing could conduct.
     """
+    check_leads(wire.lead_mu, wire.mass, wire.lattice)
     result = conductance(
         wire,
         grids["mu"],

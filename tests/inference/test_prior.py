@@ -115,15 +115,18 @@ def test_every_parameter_is_a_field_of_the_prior_and_enters():
         ({"components": 0}, "components must be a number from 1 to 59"),
         ({"components": 60}, "components must be a number from 1 to 59"),
         ({"components": "All"}, 'V of every site ."all" in a file., but it is .All'),
-        ({"g": (30, 20)}, "g must have two finite .* smaller one first, .* they are 30 and 20"),
-        ({"g": (20, 20)}, "g must have two finite numbers"),
-        ({"g": (20, np.nan)}, "g must have two finite numbers"),
-        ({"critical_field": (1, np.inf)}, "critical_field must have two finite .* 1 and inf"),
+        ({"g": (30, 20)}, "g must be a pair .* smaller one first, .* they are 30 and 20"),
+        ({"g": (20, 20)}, "g must be a pair .* of finite numbers"),
+        ({"g": (20, np.nan)}, "g must be a pair .* of finite numbers"),
+        ({"critical_field": (1, np.inf)}, "critical_field must be a pair .* 1 and inf"),
         ({"g": (1, 2, 3)}, r"g must be a number, a pair \(low, high\), or a normal distribution"),
         ({"g": "large"}, "g must be a number, a pair"),
         ({"g": {"mean": 25}}, "g must be a number, a pair"),
         ({"g": {"mean": 25, "std": 0}}, "g must be a distribution of some width"),
-        ({"g": Normal(5, 2)}, "g must stay from 0 to 100, but it reaches from -5 to 15"),
+        (
+            {"g": Normal(5, 2)},
+            "it reaches from -5 to 15, and the nearer end is within 3 std: give a pair",
+        ),
         ({"lever_arm": Normal(1, 0.4)}, "from 1e-06 to 1e.06 meV per unit, but it reaches from -1"),
         ({"gamma": -0.1}, "gamma must be a number from 0 to 10 meV"),
         ({"amplitude": -1}, "amplitude must be a number"),
@@ -140,7 +143,8 @@ def test_what_is_no_prior_is_refused_in_one_sentence(prior, says):
     ("text", "says"),
     [
         ("g = [20", "prior must be a TOML file, .* is not: "),
-        ("G = 20", "prior must say something of components, .* of 'G'"),
+        ("G = 20", r"something of components, .* of 'G' \(is g meant\?\)"),
+        ("width = 20", "prior must say something of components, .* of 'width'\\."),
         ("[g]\nmean = 25\nwidth = 1", "g must be a number, a pair"),
         (None, "cannot be read"),
     ],
@@ -318,3 +322,11 @@ def test_a_normal_distribution_ends_where_the_range_does(name, mean, std, low, h
     np.testing.assert_allclose(belief.value([-9.0, 0.0, 1.0, 9.0]), [low, mean, mean + std, high])
     np.testing.assert_allclose(belief.standard([mean, mean + std]), [0.0, 1.0], atol=1e-12)
     assert Prior.from_mapping(prior.to_dict()).unknown[name].range == belief.range
+
+
+def test_leads_that_conduct_nothing_are_refused():
+    """Their band is 16.6 meV wide where the lattice spacing is twice the paper's."""
+    wide = Prior(3, SITES, mass=0.023, lattice=20.0)
+    with pytest.raises(ArgumentError, match=r"lead_mu must be below 16\.6 meV, .* it is 25"):
+        observation(wide)
+    assert abs(observation(replace(wide, lead_mu=8.0)).simulate(np.zeros((1, 5)))).max() > 1e-3

@@ -95,4 +95,5 @@ def simulate(
     write_dataset(result, output, made_here())
     if plot is not None:
         simulation.plot_simulation(result, plot)
-    print(f"{wire.sites} sites; {wrote(output, plot)}")
+    V = wire.potential
+    print(f"{wire.sites} sites, V from {V.min():.3g} to {V.max():.3g} meV; {wrote(output, plot)}")

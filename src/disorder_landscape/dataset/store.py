@@ -105,13 +105,22 @@ def read_dataset(path: str | Path, variables: Iterable[str] = ()) -> xr.Dataset:
     except FileNotFoundError:
         raise ArgumentError("file", must, f"there is no '{path}'") from None
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RuntimeError) as error:
-        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
-        raise ArgumentError("file", must, f"'{path}' cannot be read: {reason}") from None
+        raise ArgumentError("file", must, f"'{path}' {_unreadable(path, error)}") from None
     lost = [name for name, of in dataset.variables.items() if of.size and name not in stored]
     require(not lost, "file", must, f"'{path}' has lost what {', '.join(map(str, lost))} held")
     missing = [name for name in variables if name not in dataset.variables]
     require(not missing, "file", must, f"'{path}' lacks {', '.join(missing)}")
     return dataset
+
+
+def _unreadable(path: str | Path, error: Exception) -> str:
+    """Return as words why a file cannot be read."""
+    if Path(path).is_dir():
+        return "is a folder"
+    if Path(path).is_file() and not h5py.is_hdf5(path):
+        return "is of another format, or damaged"
+    reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+    return f"cannot be read: {reason}"
 
 
 def _is_stored(member: h5py.Dataset | h5py.Group | h5py.Datatype) -> bool:

@@ -38,7 +38,8 @@ def tasks_of_folder(
     hashes = settings.hashes()
     tasks = []
     for path in measurements:
-        require(path.is_file(), "measurement", "be a netCDF file", f"there is no '{path}'")
+        but = f"'{path}' is a folder" if path.is_dir() else f"there is no '{path}'"
+        require(path.is_file(), "measurement", "be a netCDF file", but)
         plot = None if plots is None else plots / f"{path.stem}.png"
         task = Task(path, output / f"{path.stem}.nc", plot)
         same = task.output.resolve() == path.resolve()

@@ -67,7 +67,8 @@ class Nanowire:
     barrier : tuple of two floats
         V_Barrier on the first and on the last site, in meV (S-II.1).
     lead_mu : float
-        Chemical potential of the leads in meV, a convention of the group's published codes.
+        Chemical potential of the leads in meV, a convention of the group's published codes. From
+        4ħ²/2m*a² on, the width of their band, nothing conducts.
     lead_alpha : float or None
         Spin–orbit coupling of the leads in meV nm; None takes the wire's.
     lead_g : float or None
@@ -143,7 +144,7 @@ class Nanowire:
     @property
     def hopping(self) -> float:
         """T = ħ²/2m*a² in meV."""
-        return HBAR2_OVER_2ME / (self.mass * self.lattice**2)
+        return hopping(self.mass, self.lattice)
 
     @property
     def spin_orbit_hopping(self) -> float:
@@ -219,6 +220,26 @@ COLDEST, HOTTEST = 1e-6, 10.0
 """Range of temperatures above zero in K."""
 BARRIER_RANGE = (-1e3, 1e3, "meV")
 """The same of the barriers."""
+
+
+def hopping(mass: float, lattice: float) -> float:
+    """Return T = ħ²/2m*a² in meV, of electron masses and nm."""
+    return HBAR2_OVER_2ME / (mass * lattice**2)
+
+
+def check_leads(lead_mu: float, mass: float, lattice: float) -> None:
+    """Require that the leads' band reaches up to their chemical potential.
+
+    Raises
+    ------
+    ArgumentError
+        If it does not: then no mode propagates in them, but for spin splitting, and nothing
+        conducts.
+    """
+    width = 4 * hopping(mass, lattice)
+    must = f"be below {width:.3g} meV, the width of the leads' band, for anything to conduct"
+    but = f"it is {lead_mu:g} (a smaller lattice spacing makes the band wider)"
+    require(lead_mu < width, "lead_mu", must, but)
 
 
 def checked_temperature(temperature: object) -> float:

@@ -140,7 +140,7 @@ def belief_of(name: str, given: object, low: float, high: float, unit: str) -> B
         pair = reals(name, given, must)
         require(pair.shape == (2,), name, must, f"it is {shown(given)}")
         is_range = bool(np.isfinite(pair).all() and pair[0] < pair[1])
-        ordered = "have two finite numbers, the smaller one first, where it has two"
+        ordered = "be a pair (low, high) of finite numbers, the smaller one first"
         require(is_range, name, ordered, f"they are {pair[0]:g} and {pair[1]:g}")
         given = Uniform(*pair.tolist())
     if not isinstance(given, Uniform | Normal):
@@ -157,5 +157,7 @@ def belief_of(name: str, given: object, low: float, high: float, unit: str) -> B
     require(wide, name, "be a distribution of some width", f"it is {shown(given)}")
     within = f"stay from {low:g} to {high:g} {unit}".rstrip()
     reaches = f"it reaches from {least:g} to {most:g}"
+    if isinstance(given, Normal):
+        reaches += f", and the nearer end is within {LEAST:g} std: give a pair (low, high) instead"
     require(low <= least and most <= high, name, within, reaches)
     return given

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, Self
 
@@ -36,6 +37,7 @@ from disorder_landscape.model.parameters import (
     PARAMETER_RANGES,
     SITES,
     Nanowire,
+    check_leads,
     gap_in_field,
 )
 
@@ -168,8 +170,9 @@ class Prior:
         Raises
         ------
         ArgumentError
-            If both say different things, or biases may lie beyond the gap.
+            If both say different things, biases may lie beyond the gap, or nothing could conduct.
         """
+        check_leads(self.lead_mu, self.mass, self.lattice)
         for name in FIXED:
             check_agreement(name, getattr(self, name), measurement.stated.get(name))
         if measurement.axis == "gate":
@@ -239,7 +242,9 @@ class Prior:
         known = [of.name for of in fields(cls)]
         for name in given:
             must = f"say something of {', '.join(known)}"
-            require(name in known, "prior", must, f"it says something of {shown(name)}")
+            close = get_close_matches(str(name).lower(), known, 1)
+            meant = f" (is {close[0]} meant?)" if close else ""
+            require(name in known, "prior", must, f"it says something of {shown(name)}{meant}")
         content = dict(given)
         if content.get("components") == ALL:
             content["components"] = None
