@@ -138,7 +138,7 @@ def test_a_potential_is_read_as_spreadsheets_write_it(tmp_path, text):
 @pytest.mark.parametrize("header", ["x (nm),V (ueV)", "V [µeV]", "V (V)"])
 def test_a_potential_in_another_unit_is_refused(tmp_path, header):
     (tmp_path / "V.csv").write_text(f"{header}\n1,100\n2,200\n", "utf-8")
-    with pytest.raises(ArgumentError, match="in meV per site, .* its header says "):
+    with pytest.raises(ArgumentError, match=r"in meV per site, .* its header says "):
         read_potential(tmp_path / "V.csv")
 
 

@@ -72,22 +72,22 @@ def plot_inside(result: xr.Dataset, path: Path) -> None:
     above, middle, below = figure.subplots(3, 1, sharex=True, height_ratios=(1, 2, 1))
     x = positions(result.sizes["site"], result.attrs["lattice"])
     above.plot(x, result.potential, "k-", lw=1)
-    above.set_ylabel("$V$ (meV)")
+    above.set_ylabel("$V$ [meV]")
     above.set_title(f"µ = {result.attrs['mu']:g} meV, B = {result.attrs['B']:g} T", loc="left")
     density = result.LDOS_electron + result.LDOS_hole
     if result.sizes["energy"] > 1:
         energy = 1e3 * result.energy
         drawn = middle.pcolormesh(x, energy, density, cmap="magma", vmin=0, rasterized=True)
-        label = "LDOS (1/meV per site)"
+        label = "LDOS [1/meV per site]"
         figure.colorbar(drawn, ax=middle, label=label, pad=0.01)
         levels = 1e3 * np.concatenate([result.level, -result.level])
         seen = levels[(levels >= energy.min().item()) & (levels <= energy.max().item())]
         middle.hlines(seen, 0.98 * x[-1], x[-1], "w", lw=1.5)
-        middle.set_ylabel("energy (µeV)")
+        middle.set_ylabel("energy [µeV]")
         middle.set_title("white at the right: levels without leads", loc="left", fontsize=8)
     else:
         middle.plot(x, density[0], "k-", lw=1)
-        middle.set_ylabel("LDOS (1/meV per site)")
+        middle.set_ylabel("LDOS [1/meV per site]")
     for letter, colour in (("A", "C0"), ("B", "C3")):
         weight = (result[f"majorana_{letter}"] ** 2).sum(("nambu", "part"))
         below.plot(x, weight, colour, lw=1, label=rf"$|\gamma_{letter}|^2$")
@@ -96,6 +96,6 @@ def plot_inside(result: xr.Dataset, path: Path) -> None:
         loc="left",
     )
     below.set_ylabel("per site")
-    below.set_xlabel("position (µm)")
+    below.set_xlabel("$x$ [µm]")
     below.legend(frameon=False)
     write_picture(path, figure, dpi=150)

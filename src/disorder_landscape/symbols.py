@@ -24,9 +24,10 @@ def symbol(name: str) -> str:
     return rf"$G_\mathrm{{{name[2:]}}}$"
 
 
-def axis_label(axis: str) -> str:
-    """Return the label of an axis with its unit; others than the measurement's have their name."""
-    return "{} [{}]".format(*AXIS_SYMBOLS[axis]) if axis in AXIS_SYMBOLS else axis
+def axis_label(axis: str, gate_unit: str = "") -> str:
+    """Return the label of an axis with its unit, which of a gate voltage may be stated."""
+    words, unit = AXIS_SYMBOLS.get(axis, (axis, gate_unit))
+    return f"{words} [{unit}]" if unit else words
 
 
 def colour_scale(name: str, largest: float) -> dict[str, Any]:

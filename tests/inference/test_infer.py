@@ -451,7 +451,7 @@ def test_the_summary_says_it_all(inferred):
     lines = "\n".join(summary(inferred))
     assert "neither" not in lines
     assert "verdict         converged" in lines
-    assert "; before: 6.4 to 9.6\n" in lines
+    assert "; before: 6.4 to 9.6 meV nm\n" in lines
     assert "from            the prior\nattempts        1, rounds: " in lines
     assert lines.count("noise: 0.001 e²/h") == 4
 

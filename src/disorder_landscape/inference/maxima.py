@@ -33,12 +33,10 @@ def maxima_of(observation: Observation, outcome: Outcome) -> xr.Dataset:
     X = np.stack([optima[k].answer.mean for k in order])
     unknowns = observation.unknowns
     V = unknowns.potential(X)
-    words = {"long_name": "potential at the maxima of the posterior", "units": "meV"}
-    of_share = {"long_name": "share of the posterior", "units": "1"}
     found = xr.Dataset(
         {
-            "share": ("maximum", share[order], of_share),
-            "potential_maxima": (("maximum", "site"), V, words),
+            "share": ("maximum", share[order]),
+            "potential_maxima": (("maximum", "site"), V),
         }
     )
     for name in unknowns.parameters:

@@ -91,7 +91,11 @@ def _table(title: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> st
 
 def _parameters(result: xr.Dataset) -> list[tuple[str, str, str]]:
     return [
-        (BY_NAME[name].long_name, prior_as_text(belief), parameter_with_std(result, name))
+        (
+            f"{BY_NAME[name].long_name} ({name})",
+            prior_as_text(result, name, belief),
+            parameter_with_std(result, name),
+        )
         for name, belief in prior_of_result(result).unknown.items()
     ]
 

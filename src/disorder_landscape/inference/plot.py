@@ -30,6 +30,8 @@ from disorder_landscape.inference.report import (
     sentences_on,
 )
 from disorder_landscape.inference.verdict import CONVERGED
+from disorder_landscape.model.disorder import positions
+from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.model.quantities import CONDUCTANCES
 from disorder_landscape.parts import needs
 from disorder_landscape.pictures import write_picture
@@ -120,9 +122,9 @@ def _twice(*names: str) -> list[str]:
 
 
 def _potential(panel: Any, result: xr.Dataset) -> None:
-    V, site = result["potential_mean"].to_numpy(), result["site"].to_numpy()
-    panel.plot(site, V, "k", lw=0.8)
-    panel.set(ylabel=r"$V_\mathrm{dis}$ [meV]", xlim=(site[0], site[-1]))
+    V, x = result["potential_mean"].to_numpy(), _positions(result)
+    panel.plot(x, V, "k", lw=0.8)
+    panel.set(ylabel=r"$V_\mathrm{dis}$ [meV]", xlim=(x[0], x[-1]))
     panel.tick_params(labelbottom=False)
     if not has_several_maxima(result):
         panel.set_title("mean of the posterior")
@@ -130,7 +132,7 @@ def _potential(panel: Any, result: xr.Dataset) -> None:
     maxima = zip(result["share"], result["potential_maxima"], strict=True)
     for number, (share, one) in enumerate(maxima):
         label = f"{100 * share:.0f} %" if number < SAID else None
-        panel.plot(site, one, lw=0.6, label=label)
+        panel.plot(x, one, lw=0.6, label=label)
     panel.set_title("mean of the posterior (black), and its maxima with their shares of it")
     _legend_on_top(panel, ncols=SAID)
 
@@ -138,15 +140,19 @@ def _potential(panel: Any, result: xr.Dataset) -> None:
 def _potential_std(panel: Any, result: xr.Dataset) -> None:
     """Show the samples' intervals about their mean, which V's own scale would hide."""
     off = 1e3 * (result["potential"] - result["potential_mean"]).to_numpy()
-    site = result["site"].to_numpy()
+    x = _positions(result)
     for (low, high), alpha in zip(INTERVALS, (0.25, 0.5), strict=True):
         between = np.percentile(off, [low, high], axis=0)
         label = f"{high - low} % of the samples"
-        panel.fill_between(site, *between, color="C0", alpha=alpha, lw=0, label=label)
-    panel.set(xlabel="site", ylabel="deviation\n[µeV]", xlim=(site[0], site[-1]))
+        panel.fill_between(x, *between, color="C0", alpha=alpha, lw=0, label=label)
+    panel.set(xlabel="$x$ [µm]", ylabel="deviation\n[µeV]", xlim=(x[0], x[-1]))
     bar = f"error bar of V: {plain(error_bar(result))} µeV, root mean square"
-    panel.set_title(f"samples minus mean; {bar}")
+    panel.set_title(f"samples of V minus their mean; {bar}")
     _legend_on_top(panel, ncols=2)
+
+
+def _positions(result: xr.Dataset) -> FloatArray:
+    return positions(result.sizes["site"], prior_of_result(result).lattice)
 
 
 def _legend_on_top(panel: Any, ncols: int) -> None:
@@ -174,9 +180,9 @@ def _parameters(panel: Any, result: xr.Dataset, unknown: Mapping[str, Distributi
         bar = [[min(std, mean)], [min(std, 1 - mean)]]  # not beyond what it may be
         panel.errorbar(mean, row, xerr=np.maximum(bar, 0), fmt="k.", capsize=2, lw=0.8)
         panel.text(1.02, row, parameter_with_std(result, name), va="center")
-        before = f"{BY_NAME[name].long_name}, before: {prior_as_text(belief)}"
+        before = f"{BY_NAME[name].long_name}, before: {prior_as_text(result, name, belief)}"
         panel.text(-0.02, row, before, va="center", ha="right")
-    panel.set(xlim=(-1.6, 1.7), ylim=(len(unknown) - 0.4, -0.6))
+    panel.set(xlim=(-1.75, 1.7), ylim=(len(unknown) - 0.4, -0.6))
     panel.axis("off")
     panel.set_title("parameters, each on the range that it may have (grey)")
 

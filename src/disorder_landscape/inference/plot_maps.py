@@ -56,9 +56,9 @@ def draw_conductances(
     there is one B.
     """
     first, *others = measured_channels(measurement)
-    _row_of_maps(figure, panels, _compared(result, measurement, first))
+    _row_of_maps(figure, panels, _compared(result, measurement, first), measurement.gate_unit)
     shown = {CONDUCTANCES[c]: _compared(result, measurement, c)["residual"] for c in others}
-    _row_of_maps(figure, panels, shown)
+    _row_of_maps(figure, panels, shown, measurement.gate_unit)
 
 
 def _compared(result: xr.Dataset, measurement: Measurement, channel: int) -> dict[str, Shown]:
@@ -77,9 +77,9 @@ def _compared(result: xr.Dataset, measurement: Measurement, channel: int) -> dic
     colours = colour_scale(name, largest)
     beside = float(result["discrepancy"][channel]) if "discrepancy" in result else 0.0
     std = np.sqrt(errors_variance(result.attrs["noise"][channel]) + beside**2)
-    cut, unit = AXIS_SYMBOLS.get(other, (other, ""))
+    cut, unit = AXIS_SYMBOLS.get(other, (other, measurement.gate_unit))
     value = f"{cut} = {axes[other][at]:g} {unit}".strip()
-    G_name, all_errors = symbol(name), r"$\sigma$ of all errors"
+    G_name, all_errors = symbol(name), r"$\sigma$ of the errors"
     gaps = " (grey: not)" if G.mask.any() else ""
     off = f"{G_name}, measured − explained"
     return {
@@ -117,7 +117,7 @@ def draw_maps(
     in_T = {"cmap": T_IV_COLOURS, "vmin": -1, "vmax": 1}
     in_P = {"cmap": TOPOLOGICAL_COLOURS, "vmin": 0, "vmax": 1}
     in_gap = {"cmap": "cividis", "vmin": 0, "vmax": most}
-    P, exceed = result["P_topological"].to_numpy(), f"gap that {100 * SURE:.0f} % exceed"
+    P, exceed = result["P_topological"].to_numpy(), f"gap, {100 * SURE:.0f} % sure"
     T_IV = result["T_IV"][0].to_numpy()
     closed = r" ($\Gamma = 0$)" if has_dissipation(result) else ""
     wire = "most probable wire" if "share" in result else "mean"  # in results of older versions
@@ -126,7 +126,7 @@ def draw_maps(
         "P": Shown(fine, P, "$P$(topological); dots: data", "", in_P),
         "gap": Shown(data, gap, exceed + closed, "µeV", in_gap),
     }
-    _row_of_maps(figure, panels, shown)
+    _row_of_maps(figure, panels, shown, measurement.gate_unit)
     along, upward = np.meshgrid(measurement.B, measurement.mu)
     if 1 in along.shape:
         along = data[_axis_of_curve(data)]
@@ -134,7 +134,9 @@ def draw_maps(
     panels["P"].plot(along.ravel(), upward.ravel(), ".", color="0.4", ms=0.6)
 
 
-def _row_of_maps(figure: Any, panels: Mapping[str, Any], shown: Mapping[str, Shown]) -> None:
+def _row_of_maps(
+    figure: Any, panels: Mapping[str, Any], shown: Mapping[str, Shown], gate_unit: str
+) -> None:
     """Draw maps side by side, or curves where an axis has one value; name the left one's axis."""
     for column, (kind, one) in enumerate(shown.items()):
         panel, (upward, along) = panels[kind], one.grid
@@ -144,7 +146,7 @@ def _row_of_maps(figure: Any, panels: Mapping[str, Any], shown: Mapping[str, Sho
             how = {"shading": "nearest", "rasterized": True}
             panel.set_facecolor(NOT_MEASURED)
             image = panel.pcolormesh(x, y, one.values, **how, **one.options)
-            panel.set_ylabel("" if column else axis_label(upward))
+            panel.set_ylabel("" if column else axis_label(upward, gate_unit))
             figure.colorbar(image, ax=panel, label=one.unit, location="bottom", aspect=20)
         else:
             along = _axis_of_curve(one.grid)
@@ -153,7 +155,7 @@ def _row_of_maps(figure: Any, panels: Mapping[str, Any], shown: Mapping[str, Sho
             if one.options is not RESIDUAL:
                 low, high = one.options["vmin"], one.options["vmax"]
                 panel.set_ylim(low - 0.05 * (high - low), high + 0.05 * (high - low))
-        panel.set_xlabel(axis_label(along))
+        panel.set_xlabel(axis_label(along, gate_unit))
 
 
 def _axis_of_curve(grid: Mapping[str, FloatArray]) -> str:

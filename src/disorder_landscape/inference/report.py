@@ -18,6 +18,7 @@ SURE = 0.95
 SAID = 4
 """Of so many maxima of the posterior the shares are said."""
 
+NEGATIVE = "The topological visibility T_IV is negative"
 NOT_TO_BE_TRUSTED = "so neither error bars nor P(topological) are to be trusted"
 
 
@@ -25,15 +26,19 @@ def parameter_with_std(result: xr.Dataset, name: str) -> str:
     """Return an unknown parameter and its standard deviation as text."""
     mean, std = float(result[f"{name}_mean"]), float(result[f"{name}_std"])
     digits = max(0, int(1 - np.floor(np.log10(std)))) if std > 0 else 6
-    unit = result[name].attrs["units"]
-    return f"{mean:z.{digits}f} ± {std:.{digits}f}" + ("" if unit == "1" else f" {unit}")
+    return f"{mean:z.{digits}f} ± {std:.{digits}f}{_unit(result, name)}"
 
 
-def prior_as_text(belief: Distribution) -> str:
-    """Return what was known of a parameter as text."""
+def prior_as_text(result: xr.Dataset, name: str, belief: Distribution) -> str:
+    """Return what was known of an unknown parameter as text."""
     if isinstance(belief, Uniform):
-        return f"{belief.low:g} to {belief.high:g}"
-    return f"{belief.mean:g} ± {belief.std:g}"
+        return f"{belief.low:g} to {belief.high:g}{_unit(result, name)}"
+    return f"{belief.mean:g} ± {belief.std:g}{_unit(result, name)}"
+
+
+def _unit(result: xr.Dataset, name: str) -> str:
+    unit = result[name].attrs["units"]
+    return "" if unit == "1" else f" {unit}"
 
 
 def plain(number: float) -> str:
@@ -108,15 +113,18 @@ def topological_sentence(result: xr.Dataset) -> str:
     """Return in how much of the measured range T_IV is negative, as a sentence."""
     P = result["P_topological"].to_numpy()
     surely, perhaps = 100 * float((P >= SURE).mean()), 100 * float((P > 1 - SURE).mean())
-    measured = f"the measured {'gate' if 'gate' in result.dims else 'µ'} and B"
+    first = "gate" if "gate" in result.dims else "mu"
+    names = {first: "gate voltages" if first == "gate" else "µ", "B": "B"}
+    several = [words for axis, words in names.items() if result.sizes[axis] > 1]
+    measured = f"the measured {' and '.join(several or names.values())}"
     meaning = "topological where there is a gap"
     if has_dissipation(result):
         meaning += ", without its dissipation"
     if perhaps == 0:
-        return f"T_IV < 0, {meaning}, nowhere in {measured}."
+        return f"{NEGATIVE}, {meaning}, nowhere in {measured}."
     share = f"{surely:.0f}" if surely == 0 or surely >= 1 else "less than 1"
     more = f", perhaps in {perhaps - surely:.0f} % more" if perhaps - surely >= 1 else ""
-    return f"T_IV < 0, {meaning}, in {share} % of {measured} (P ≥ {SURE:g}){more}."
+    return f"{NEGATIVE}, {meaning}, in {share} % of {measured} (P ≥ {SURE:g}){more}."
 
 
 def sentences_on(result: xr.Dataset) -> list[str]:
@@ -164,7 +172,7 @@ def summary(result: xr.Dataset) -> list[str]:
         said = f"{result.sizes['maximum']}, with {shares_as_text(result)}"
         lines.append(f"maxima          {said}; the mean of V is none of them")
     for name, belief in prior_of_result(result).unknown.items():
-        known = prior_as_text(belief)
+        known = prior_as_text(result, name, belief)
         lines.append(f"{name:14}  {parameter_with_std(result, name)}; before: {known}")
     if result.attrs["not_fixed"]:
         lines.append(f"not fixed       {result.attrs['not_fixed']}")

@@ -33,63 +33,19 @@ NEAR_LIMIT, KNOWN = 1.5, 0.15
 """A parameter is at a limit of a uniform prior if it is nearer than so many standard deviations,
 and if one is less than this part of the prior's range (0.29 of it is as little as is known
 before)."""
+MAP = "map_mu", "map_B"
+"""Axes of the maps of T_IV, which are finer than those of the measurement."""
 HERMITE = 61
 """Nodes by which the mean of a parameter's distribution is taken."""
 
 
 def result_of(observation: Observation, outcome: Outcome, samples: int, seed: int) -> xr.Dataset:
     """Return the dataset of `infer`, but for the attributes that tell how it was found."""
-    m, unknowns = observation.measurement, observation.unknowns
-    answer = outcome.answer
-    mean, covariance = answer.mean, answer.covariance
+    unknowns, covariance = observation.unknowns, outcome.answer.covariance
     X = outcome.draw(np.random.default_rng([seed, Stream.SAMPLES]), samples)
-    maps = fine_grids(m.mu, m.B)
-    most_probable = outcome.best.answer.mean[None]
-    T_IV = visibility(observation, np.concatenate([most_probable, X]), maps)
-    G = observation.conductances(most_probable)[0]
-    grid, gaps = ("map_mu", "map_B"), gap_energies(observation)
-    data = {
-        "potential": (("sample", "site"), unknowns.potential(X)),
-        "potential_mean": ("site", unknowns.potential(mean)),
-        "potential_std": ("site", unknowns.potential_std(covariance)),
-        "misfit": ("channel", observation.misfit(outcome.best.data)),
-        **{name: (AXES, G[..., c]) for c, name in enumerate(CONDUCTANCES)},
-        "T_IV": (("lead", *grid), T_IV[0]),
-        "P_topological": (grid, (T_IV[1:, 0] < 0).mean(axis=0)),
-        "P_gap": (("gap", *AXES[:2]), gap_probability(observation, X, gaps)),
-    }
-    coords = {
-        "site": np.arange(unknowns.given.sites),
-        "channel": list(CONDUCTANCES),
-        "lead": ["L", "R"],
-        "gap": gaps,
-        **{axis: getattr(m, axis) for axis in AXES},
-        **dict(zip(grid, maps, strict=True)),
-    }
-    if unknowns.given.components is not None:
-        labels = unknowns.label_slopes(mean)[: unknowns.given.components]
-        std = np.sqrt(np.einsum("ci,ij,cj->c", labels, covariance, labels))
-        data |= {
-            "components": (("sample", "component"), unknowns.components(X)),
-            "components_mean": ("component", unknowns.components(mean)),
-            "components_std": ("component", std),
-        }
-        coords["component"] = np.arange(1, unknowns.given.components + 1)
-    dataset = with_units(xr.Dataset(data, coords=coords)).merge(maxima_of(observation, outcome))
-    for name, belief in unknowns.parameters.items():
-        k = unknowns.names.index(name)
-        if (drawn := outcome.importance_samples) is None:
-            average, std = moments(belief, mean[k], np.sqrt(covariance[k, k]))
-        else:
-            average, std = drawn.moments_of(belief.value(drawn.samples[:, k]))
-        for ending, dims, value in (
-            ("", ("sample",), unknowns.parameter(name, X)),
-            ("_mean", (), average),
-            ("_std", (), std),
-        ):
-            of = {"": "", "_mean": "mean of the ", "_std": "standard deviation of the "}[ending]
-            attrs = {"long_name": of + BY_NAME[name].long_name, "units": BY_NAME[name].unit or "1"}
-            dataset[name + ending] = (dims, value, attrs)
+    parts = [_of_most_probable(observation, outcome), _of_samples(observation, X)]
+    parts += [_potential(unknowns, outcome, X), maxima_of(observation, outcome)]
+    dataset = with_units(xr.merge(parts)).merge(_parameters(unknowns, outcome, X))
     limits = at_limit(dataset, unknowns.parameters)
     dataset.attrs = {
         **unknowns.given.known,
@@ -99,13 +55,91 @@ def result_of(observation: Observation, outcome: Outcome, samples: int, seed: in
         "at_limit": ", ".join(f"{name} ({limit})" for name, limit in limits.items()),
         "prior": json.dumps(unknowns.given.to_dict()),
     }
-    dataset["gap"].attrs = {"long_name": "lowest excitation", "units": "meV"}
-    dataset["P_gap"].attrs = {"long_name": "share of the samples above this energy", "units": "1"}
-    if m.axis == "mu":
-        return dataset
-    dataset = dataset.rename(mu=m.axis, map_mu=f"map_{m.axis}")
-    for name in (m.axis, f"map_{m.axis}"):
-        dataset[name].attrs = {"long_name": "gate voltage, in the measurement's unit"}
+    m = observation.measurement
+    return dataset if m.axis == "mu" else _over_gate(dataset, m.gate_unit)
+
+
+def _of_most_probable(observation: Observation, outcome: Outcome) -> xr.Dataset:
+    """Return what the most probable wire shows."""
+    m, x = observation.measurement, outcome.best.answer.mean[None]
+    G, maps = observation.conductances(x)[0], fine_grids(m.mu, m.B)
+    data = {
+        "misfit": ("channel", observation.misfit(outcome.best.data)),
+        **{name: (AXES, G[..., c]) for c, name in enumerate(CONDUCTANCES)},
+        "T_IV": (("lead", *MAP), visibility(observation, x, maps)[0]),
+    }
+    coords = {
+        "channel": list(CONDUCTANCES),
+        "lead": ["L", "R"],
+        **{axis: getattr(m, axis) for axis in AXES},
+        **dict(zip(MAP, maps, strict=True)),
+    }
+    return xr.Dataset(data, coords=coords)
+
+
+def _of_samples(observation: Observation, X: FloatArray) -> xr.Dataset:
+    """Return what shares of the samples X (sample, unknown) are topological, and have a gap."""
+    m, gaps = observation.measurement, gap_energies(observation)
+    T_IV = visibility(observation, X, fine_grids(m.mu, m.B))
+    data = {
+        "P_topological": (MAP, (T_IV[:, 0] < 0).mean(axis=0)),
+        "P_gap": (("gap", *AXES[:2]), gap_probability(observation, X, gaps)),
+    }
+    return xr.Dataset(data, coords={"gap": gaps})
+
+
+def _potential(unknowns: Unknowns, outcome: Outcome, X: FloatArray) -> xr.Dataset:
+    """Return the potential, and its components if it has any: samples, means, error bars."""
+    mean, covariance = outcome.answer.mean, outcome.answer.covariance
+    data = {
+        "potential": (("sample", "site"), unknowns.potential(X)),
+        "potential_mean": ("site", unknowns.potential(mean)),
+        "potential_std": ("site", unknowns.potential_std(covariance)),
+    }
+    coords = {"site": np.arange(unknowns.given.sites)}
+    if (count := unknowns.given.components) is not None:
+        slopes = unknowns.label_slopes(mean)[:count]
+        data |= {
+            "components": (("sample", "component"), unknowns.components(X)),
+            "components_mean": ("component", unknowns.components(mean)),
+            "components_std": (
+                "component",
+                np.sqrt(np.einsum("ci,ij,cj->c", slopes, covariance, slopes)),
+            ),
+        }
+        coords["component"] = np.arange(1, count + 1)
+    return xr.Dataset(data, coords=coords)
+
+
+def _parameters(unknowns: Unknowns, outcome: Outcome, X: FloatArray) -> xr.Dataset:
+    """Return the parameters that are unknown: samples, means, error bars."""
+    mean, std = outcome.answer.mean, np.sqrt(np.diag(outcome.answer.covariance))
+    found = xr.Dataset()
+    for name, belief in unknowns.parameters.items():
+        k = unknowns.names.index(name)
+        if (drawn := outcome.importance_samples) is None:
+            moments_of_it = moments(belief, mean[k], std[k])
+        else:
+            moments_of_it = drawn.moments_of(belief.value(drawn.samples[:, k]))
+        one = BY_NAME[name]
+        for ending, words, dims, value in (
+            ("", "", ("sample",), unknowns.parameter(name, X)),
+            ("_mean", "mean of the ", (), moments_of_it[0]),
+            ("_std", "standard deviation of the ", (), moments_of_it[1]),
+        ):
+            attrs = {"long_name": words + one.long_name, "units": one.unit or "1"}
+            found[name + ending] = (dims, value, attrs)
+    return found
+
+
+def _over_gate(dataset: xr.Dataset, unit: str) -> xr.Dataset:
+    """Return a result over gate voltages, whose unit may be stated, in place of μ."""
+    dataset = dataset.rename(mu="gate", map_mu="map_gate")
+    for name in ("gate", "map_gate"):
+        dataset[name].attrs = {"long_name": "gate voltage"} | ({"units": unit} if unit else {})
+    if unit:
+        for variable in (v for n, v in dataset.items() if str(n).startswith("lever_arm")):
+            variable.attrs["units"] = f"meV/{unit}"
     return dataset
 
 

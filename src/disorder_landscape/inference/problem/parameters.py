@@ -109,7 +109,7 @@ PARAMETERS = (
         *("bias", _bias_offset, 1.0),
     ),
     Parameter(
-        *("lever_arm", "chemical potential per unit of the axis", "meV per unit", 1.0, 1e-6, 1e6),
+        *("lever_arm", "lever arm", "meV per unit", 1.0, 1e-6, 1e6),
         *("mu", _lever_arm, 1.0),
         of_measured_mu=True,
     ),
