@@ -80,7 +80,9 @@ def test_a_page_says_what_was_found(result):
     text = page(result, Figure())
     assert verdict_sentence(result) in text
     assert 'class="verdict converged"' in text
-    assert re.search(r"<td>Landé g-factor</td><td>23 to 27</td><td>2\d\.\d+ ± 0\.\d+</td>", text)
+    assert re.search(
+        r"<td>Landé g-factor \(g\)</td><td>23 to 27</td><td>2\d\.\d+ ± 0\.\d+</td>", text
+    )
     for name in CONDUCTANCES:
         assert f"<td>{name}</td>" in text
     assert text.count("<table>") == text.count("</table>") == 3
@@ -108,7 +110,7 @@ def test_topological_shares_are_of_the_range(result):
     def said():
         return topological_sentence(result.assign(P_topological=P))
 
-    assert "nowhere in the measured gate and B" in said()
+    assert "nowhere in the measured gate voltages and B" in said()
     P[: P.shape[0] // 2] = 0.5
     assert "in 0 % of" in said()
     assert "49 % more" in said()
@@ -126,6 +128,7 @@ def test_a_bias_without_data_is_not_drawn(result, measured, tmp_path):
     assert "-0.03 meV" in path.read_text().replace("\N{MINUS SIGN}", "-")
 
 
+BIAS, AT_NO_BIAS = r"$V_\mathrm{bias}$ [meV]", r"at $V_\mathrm{bias}$ = 0 meV"
 ONE_GATE, ONE_FIELD = {"gate": [2], "map_gate": [2]}, {"B": [2], "map_B": [2]}
 ONE_BIAS = {"bias": [1]}
 
@@ -133,13 +136,13 @@ ONE_BIAS = {"bias": [1]}
 @pytest.mark.parametrize(
     ("at", "axes", "title", "maps"),
     [
-        ({}, ("gate", "$B$ [T]"), "at bias = 0 meV", 9),
-        (ONE_GATE, ("bias [meV]", "$B$ [T]"), "at gate = 0.6", 6),
-        (ONE_FIELD, ("bias [meV]", "gate"), "at $B$ = 0.4 T", 6),
-        (ONE_GATE | ONE_BIAS, ("$e^2/h$", "$B$ [T]"), "at bias = 0 meV", 0),
-        (ONE_FIELD | ONE_BIAS, ("$e^2/h$", "gate"), "at bias = 0 meV", 0),
-        (ONE_GATE | ONE_FIELD, ("$e^2/h$", "bias [meV]"), "at gate = 0.6", 0),
-        (ONE_GATE | ONE_FIELD | ONE_BIAS, ("$e^2/h$", "gate"), "at bias = 0 meV", 0),
+        ({}, ("gate", "$B$ [T]"), AT_NO_BIAS, 9),
+        (ONE_GATE, (BIAS, "$B$ [T]"), "at gate = 0.6", 6),
+        (ONE_FIELD, (BIAS, "gate"), "at $B$ = 0.4 T", 6),
+        (ONE_GATE | ONE_BIAS, ("$e^2/h$", "$B$ [T]"), AT_NO_BIAS, 0),
+        (ONE_FIELD | ONE_BIAS, ("$e^2/h$", "gate"), AT_NO_BIAS, 0),
+        (ONE_GATE | ONE_FIELD, ("$e^2/h$", BIAS), "at gate = 0.6", 0),
+        (ONE_GATE | ONE_FIELD | ONE_BIAS, ("$e^2/h$", "gate"), AT_NO_BIAS, 0),
     ],
 )
 def test_maps_are_over_the_axes_of_more_than_one_value(result, measured, at, axes, title, maps):

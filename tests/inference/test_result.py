@@ -129,7 +129,7 @@ def test_a_device_is_found_with_its_offsets(device, inferred):
         assert abs(inferred[f"{name}_mean"] - value) < 4 * inferred[f"{name}_std"]
         assert inferred[name].dims == ("sample",)
         assert_allclose(inferred[name].std(), inferred[f"{name}_std"], rtol=0.4)
-    assert inferred["lever_arm"].attrs["units"] == "meV per unit"
+    assert inferred["lever_arm"].attrs["units"] == "meV/V"
     assert "mean and mu_offset" in inferred.attrs["not_told_apart"]
     shape = inferred["potential_mean"] - inferred["potential_mean"].mean()
     assert np.sqrt(((shape - wire.potential) ** 2).mean()) < 0.002
@@ -200,8 +200,8 @@ def test_maps_are_those_of_the_wire_without_its_dissipation(dissipation):
 
 
 def test_axes_and_gaps_say_what_they_are(inferred):
-    assert inferred["gate"].attrs["long_name"].startswith("gate voltage")
-    assert "units" not in inferred["map_gate"].attrs
+    assert inferred["gate"].attrs == {"long_name": "gate voltage", "units": "V"}
+    assert inferred["lever_arm_std"].attrs["units"] == "meV/V"
     assert inferred["gap"].attrs["units"] == "meV"
 
 

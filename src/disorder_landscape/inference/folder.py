@@ -58,7 +58,7 @@ def tasks_of_folder(
 
 
 @dataclass(frozen=True)
-class Outcome:
+class Inferred:
     """What came of one of many measurements: a verdict, or the error that hindered it."""
 
     task: Task
@@ -68,7 +68,7 @@ class Outcome:
     """Whether it has been inferred now, and not only drawn."""
 
 
-def infer_one_of_many(settings: Settings, task: Task) -> Outcome:
+def infer_one_of_many(settings: Settings, task: Task) -> Inferred:
     """Do as `infer_file`, or draw the result that is there; an error does not hinder the others."""
     try:
         with alone_with(task):
@@ -79,6 +79,6 @@ def infer_one_of_many(settings: Settings, task: Task) -> Outcome:
                 result = read_dataset(task.output)
                 if not task.is_done:
                     draw(result, read_dataset(task.measurement), task.plot)
-        return Outcome(task, verdict=str(result.attrs["verdict"]), is_new=is_new)
+        return Inferred(task, verdict=str(result.attrs["verdict"]), is_new=is_new)
     except ArgumentError as error:
-        return Outcome(task, error=str(error))
+        return Inferred(task, error=str(error))

@@ -109,7 +109,7 @@ def unseen(optima: Sequence[Optimum], share: FloatArray) -> float:
 
 def same_answer(observation: Observation, one: Optimum, other: Optimum) -> bool:
     """Return whether two optima are the same."""
-    scatter = max(1.0, misfit(observation, one))
+    scatter = max(1.0, relative_misfit(observation, one))
     squares = _squared_distance(observation, one, other) / one.answer.mean.size
     return bool(squares < (SAME_ANSWER * scatter) ** 2)
 
@@ -141,6 +141,6 @@ def add(observation: Observation, found: list[Optimum], new: Optimum) -> int:
     return k
 
 
-def misfit(observation: Observation, optimum: Optimum) -> float:
+def relative_misfit(observation: Observation, optimum: Optimum) -> float:
     """Return its root-mean-square misfit in units of the data's errors."""
     return float(np.sqrt(squared_misfits(observation, optimum.data).mean()))

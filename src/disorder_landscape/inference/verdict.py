@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from disorder_landscape.inference.optimum import TOLERATED, Optimum, misfit, unseen
+from disorder_landscape.inference.optimum import TOLERATED, Optimum, relative_misfit, unseen
 from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.posterior.samples import posterior_shares
 from disorder_landscape.inference.problem.observation import Observation
@@ -65,6 +65,6 @@ def same_misfit(observation: Observation, one: Optimum, other: Optimum) -> bool:
     """Return whether two optima are equally far off the data, by more than the noise is."""
     if one is other:
         return True
-    squares = np.array([misfit(observation, optimum) ** 2 for optimum in (one, other)])
+    squares = np.array([relative_misfit(observation, optimum) ** 2 for optimum in (one, other)])
     least, most = np.sqrt(np.sort(np.maximum(squares - 1, 0.0)))
     return bool(most < (1 + SAME_MISFIT) * least)

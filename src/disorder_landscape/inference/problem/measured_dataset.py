@@ -26,7 +26,7 @@ from disorder_landscape.model.parameters import (
 )
 from disorder_landscape.model.quantities import AXES, CONDUCTANCES
 
-FIXED = tuple(name for name in STATED if name not in ("alpha", "lead_mu"))
+OF_ALL_NETWORKS = tuple(name for name in STATED if name not in ("alpha", "lead_mu"))
 """Those that all wires of this program's networks have in common."""
 AS_THE_WIRE = {"lead_alpha": "alpha", "lead_g": "g", "parent_dissipation": "dissipation"}
 """Parameters of leads and parent that are, in every inversion, those of the wire."""
@@ -34,7 +34,6 @@ SETTINGS = ("theta", "barrier", "temperature")
 """Attributes that a measurement must have: in radians, in meV (left, right), in K."""
 GATE = "gate"
 """The first axis where it is a gate voltage."""
-FLAT = "pandas makes axes of columns: table.set_index([{}]).to_xarray()"
 
 
 def measurement_of(dataset: xr.Dataset, usual: Mapping[str, Any] | None = None) -> Measurement:
@@ -59,8 +58,7 @@ def measurement_of(dataset: xr.Dataset, usual: Mapping[str, Any] | None = None) 
     is_dataset = isinstance(dataset, xr.Dataset)
     require(is_dataset, "measurement", "be a Dataset", f"it is {type(dataset).__name__!r}")
     dataset = with_axes(dataset)
-    axes = _axes_of(dataset)
-    given = _given(dataset, axes)
+    axes, given = _axes_and_conductances(dataset)
     settings = {**(usual or {}), **dataset.attrs}
     missing = [name for name in SETTINGS if name not in settings]
     states = f"state {', '.join(SETTINGS)} as attributes"
@@ -88,47 +86,39 @@ def measurement_of(dataset: xr.Dataset, usual: Mapping[str, Any] | None = None) 
     )
 
 
-def _axes_of(dataset: xr.Dataset) -> tuple[str, ...]:
-    """Return the names of the axes: mu or gate, B and bias.
+def _axes_and_conductances(dataset: xr.Dataset) -> tuple[tuple[str, ...], list[str]]:
+    """Return the names of the axes, mu or gate, B and bias, and of the conductances given.
 
     Raises
     ------
     ArgumentError
-        If one is missing, or no axis.
+        If there are none of these, an axis is missing or none, or a conductance has other dims.
     """
-    axes = (
-        (GATE, *AXES[1:]) if GATE in dataset.variables and "mu" not in dataset.variables else AXES
-    )
-    missing = [name for name in axes if name not in dataset.variables]
+    has_gate = GATE in dataset.variables and "mu" not in dataset.variables
+    axes = (GATE, *AXES[1:]) if has_gate else AXES
+    given = [name for name in CONDUCTANCES if name in dataset.variables]
+    missing = [name for name in (*(given or CONDUCTANCES), *axes) if name not in dataset.variables]
     has = ", ".join(map(str, dataset.dims)) or "no dims"
     must = "hold the conductances of one wire over mu (or gate), B and bias"
     require(not missing, "measurement", must, f"it lacks {', '.join(missing)}, and has {has}")
     for name in axes:
-        dims = dataset[name].dims
-        is_table = len(dims) == 1 and dims != (name,)
-        but = f"it is along {dims[0]}" if is_table else "it is something else"
-        how = f" ({FLAT.format(', '.join(map(repr, axes)))})" if is_table else ""
-        is_axis = dims == (name,) and dataset[name].dtype.kind in "fiu"
-        require(is_axis, name, "be numbers along their own dimension", but + how)
-    return axes
-
-
-def _given(dataset: xr.Dataset, axes: Sequence[str]) -> list[str]:
-    """Return the names of the conductances that are given.
-
-    Raises
-    ------
-    ArgumentError
-        If there are none, or if one has other dims than the axes.
-    """
-    given = [name for name in CONDUCTANCES if name in dataset.variables]
-    must = f"hold the conductances of one wire over {axes[0]}, B and bias"
-    require(bool(given), "measurement", must, f"it lacks {', '.join(CONDUCTANCES)}")
+        _check_axis(dataset, name, axes)
     for name in given:
         dims = sorted(map(str, dataset[name].dims))
         but = f"the dims of {name} are {', '.join(dims)}"
         require(dims == sorted(axes), "measurement", must, but)
-    return given
+    return axes, given
+
+
+def _check_axis(dataset: xr.Dataset, name: str, axes: Sequence[str]) -> None:
+    """Require that one of the axes is one, and not a column of a table."""
+    dims = dataset[name].dims
+    is_column = len(dims) == 1 and dims != (name,)
+    columns = ", ".join(map(repr, axes))
+    how = f"pandas makes axes of columns: table.set_index([{columns}]).to_xarray()"
+    but = f"it is along {dims[0]} ({how})" if is_column else "it is something else"
+    is_axis = dims == (name,) and dataset[name].dtype.kind in "fiu"
+    require(is_axis, name, "be numbers along their own dimension", but)
 
 
 def _stated(attrs: Mapping[Any, Any]) -> dict[str, float]:
@@ -152,7 +142,7 @@ def _stated(attrs: Mapping[Any, Any]) -> dict[str, float]:
 
 
 def check_wire(measurement: Measurement) -> None:
-    """Require that a measurement states the values of FIXED, where it states any.
+    """Require that a measurement states the values of OF_ALL_NETWORKS, where it states any.
 
     Raises
     ------
@@ -161,7 +151,7 @@ def check_wire(measurement: Measurement) -> None:
     """
     on_mu = measurement.axis == "mu"
     require(on_mu, "measurement", "be over mu in meV", "it is over gate, whose unit is not known")
-    for name in FIXED:
+    for name in OF_ALL_NETWORKS:
         usual = getattr(Nanowire, name)
         stated = measurement.stated.get(name, usual)
         must = f"be {usual:g}, as in all simulations here"

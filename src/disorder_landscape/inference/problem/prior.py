@@ -44,7 +44,7 @@ from disorder_landscape.model.parameters import (
 Given = float | tuple[float, float] | Distribution | None
 ALL = "all"
 """What a file says for the components of the whole landscape."""
-FIXED = ("mass", "lattice", "lead_mu")
+ALWAYS_KNOWN = ("mass", "lattice", "lead_mu")
 """Parameters that are always known: conductances hardly tell them from others (PHYSICS: the lever
 arm from the mass, the barriers from the leads' chemical potential)."""
 
@@ -126,7 +126,7 @@ class Prior:
             ("mean_std", 1e-9, 1e3, "meV"),
         ):
             checked[name] = number_in(name, getattr(self, name), low, high, unit)
-        for name in FIXED:
+        for name in ALWAYS_KNOWN:
             checked[name] = number_in(name, getattr(self, name), *PARAMETER_RANGES[name])
         for one in PARAMETERS:
             if (given := getattr(self, one.name)) is not None:
@@ -162,7 +162,7 @@ class Prior:
     @property
     def fixed(self) -> dict[str, float]:
         """The parameters that are always known."""
-        return {name: getattr(self, name) for name in FIXED}
+        return {name: getattr(self, name) for name in ALWAYS_KNOWN}
 
     def for_measurement(self, measurement: Measurement) -> Self:
         """Return the prior with all parameters said, the rest by the measurement or the paper.
@@ -173,7 +173,7 @@ class Prior:
             If both say different things, biases may lie beyond the gap, or nothing could conduct.
         """
         check_leads(self.lead_mu, self.mass, self.lattice)
-        for name in FIXED:
+        for name in ALWAYS_KNOWN:
             check_agreement(name, getattr(self, name), measurement.stated.get(name))
         if measurement.axis == "gate":
             must = "say a lever arm, in meV per unit of the measurement's gate"

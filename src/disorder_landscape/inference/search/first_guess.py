@@ -11,8 +11,8 @@ from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.learning.model import TrainedModel, points_of_grid
 from disorder_landscape.model.parameters import FloatArray
 
-WIRES_PER_UNKNOWN = 4
-"""Wires on which the network's error is measured."""
+WIRES_OF_THE_ERROR = 4
+"""For each unknown, on which the network's error is measured."""
 LOCAL = 2.0
 """They are drawn about the guess, with this many times the network's error without noise."""
 WIDENING = 1.2
@@ -40,7 +40,7 @@ def network_guess(
     per_label = np.linalg.inv(unknowns.label_slopes(guess))
     error = np.sqrt((per_label**2) @ _error_without_noise(model, unknowns) ** 2)
     X = Gaussian(guess, LOCAL**2 * np.diag(error**2)).draw(
-        rng, WIRES_PER_UNKNOWN * len(unknowns.names)
+        rng, WIRES_OF_THE_ERROR * len(unknowns.names)
     )
     G = observation.conductances(X)
     off = network_labels(model, unknowns, G + observation.noise * rng.normal(size=G.shape)) - X

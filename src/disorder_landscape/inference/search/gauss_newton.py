@@ -77,7 +77,7 @@ def gauss_newton(
     known : sequence of Optimum
         Steps that come near one of these, and not below it, end there.
     goal : "optimum", "place", "better" or "few"
-        After few steps the covariance is that before the last one.
+        The covariance is that with the slopes before the last step, which at an optimum is as good.
     """
     prior, variance = observation.unknowns.prior, observation.variance
     precision = np.linalg.inv(prior.covariance)
