@@ -40,7 +40,7 @@ class Linear:
 
 def posterior(observation):
     """Bayes' theorem for linear data."""
-    prior = observation.unknowns.prior
+    prior = observation.unknowns.white_noise
     precision = np.linalg.inv(prior.covariance)
     weighted = observation.slope / observation.variance
     covariance = np.linalg.inv(weighted @ observation.slope.T + precision)

@@ -444,7 +444,7 @@ def test_predict_answers_or_refuses(count):
 
 def one_optimum(observation, *others):
     """Instead of an inversion: the prior's mean, with its covariance made smaller."""
-    prior = observation.unknowns.prior
+    prior = observation.unknowns.white_noise
     answer = replace(prior, covariance=1e-4 * prior.covariance)
     return Outcome([optimum_at(observation, answer)])
 

@@ -30,7 +30,7 @@ from disorder_landscape.studies.truth import more_probable_than, unknowns_of
 from disorder_landscape.studies.truth import z_scores as z_scores_of
 from linear_data import CONFIG, DATA, SIZE, UNKNOWNS, Linear, posterior
 
-PRIOR = UNKNOWNS.prior
+PRIOR = UNKNOWNS.white_noise
 WIDTH = np.sqrt(np.diag(PRIOR.covariance))
 RNG = np.random.default_rng(5)
 SLOPE = RNG.normal(size=(SIZE, DATA)) / WIDTH[:, None]
@@ -70,7 +70,7 @@ def test_importance_samples_are_not_too_narrow():
     ten = unknowns_of(CONFIG.model_copy(update={"components": 10}))
     size = len(ten.names)
     rng = np.random.default_rng(7)
-    slope = rng.normal(size=(size, DATA)) / np.sqrt(np.diag(ten.prior.covariance))[:, None]
+    slope = rng.normal(size=(size, DATA)) / np.sqrt(np.diag(ten.white_noise.covariance))[:, None]
     many = Linear(np.zeros(DATA), slope, unknowns=ten, variance=ONE)
     exact = posterior(many)
     too_wide = Gaussian(exact.mean, 1.4**2 * exact.covariance)

@@ -476,7 +476,7 @@ def test_a_prior_is_read_from_its_file(measured, tmp_path):
     path = tmp_path / "prior.toml"
     path.write_text("components = 1\nsites = 50\ng = [23, 27]\n")
     by_file = observation_of(measured, path, {"G_LL": 0.01, "G_RR": 0.01, "G_LR": 0.1, "G_RL": 0.1})
-    assert by_file.unknowns.given.g == Uniform(23, 27)
+    assert by_file.unknowns.prior.g == Uniform(23, 27)
     local = observation_of(measured[["G_LL", "G_RR"]], str(path), {"G_LL": 0.02, "G_RR": 0.01})
     assert local.noise[:2].tolist() == [0.02, 0.01]
     with pytest.raises(ArgumentError, match="noise must be one number in e²/h, or one for each"):

@@ -193,7 +193,7 @@ def test_what_the_prior_leaves_open_the_measurement_states():
     prior = Prior(3, SITES, g=(20, 30))
     given = observation(
         prior, gamma=0.2, g=26.0, barrier=[10.0, 12.0], temperature=0.04
-    ).unknowns.given
+    ).unknowns.prior
     assert (given.gamma, given.barrier_left, given.barrier_right) == (0.2, 10.0, 12.0)
     assert (given.temperature, given.delta0, given.g) == (0.04, 0.12, Uniform(20, 30))
 

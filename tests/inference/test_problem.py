@@ -14,8 +14,8 @@ from linear_data import CONFIG, SIZE, UNKNOWNS
 
 
 def test_densities_are_scipys():
-    X = UNKNOWNS.prior.draw(np.random.default_rng(11), 6)
-    prior = UNKNOWNS.prior
+    X = UNKNOWNS.white_noise.draw(np.random.default_rng(11), 6)
+    prior = UNKNOWNS.white_noise
     expected = multivariate_normal(prior.mean, prior.covariance).logpdf(X)
     found = log_density(prior, X) - SIZE / 2 * np.log(2 * np.pi)
     np.testing.assert_allclose(found, expected)
@@ -33,17 +33,17 @@ def test_the_prior_is_the_disorder_models():
     mean_std, alpha_std = UNKNOWNS.label_std[3:]
     assert mean_std == pytest.approx(0.01)
     assert alpha_std == pytest.approx(3.2 / np.sqrt(12))
-    assert UNKNOWNS.parameter("alpha", UNKNOWNS.prior.mean) == pytest.approx(8.0)
+    assert UNKNOWNS.parameter("alpha", UNKNOWNS.white_noise.mean) == pytest.approx(8.0)
 
 
 def test_the_potentials_std_needs_no_potential():
     rng = np.random.default_rng(4)
-    one, other = UNKNOWNS.prior.draw(rng, 2)
+    one, other = UNKNOWNS.white_noise.draw(rng, 2)
     apart = UNKNOWNS.potential(one) - UNKNOWNS.potential(other)
     assert site_distance(UNKNOWNS, one, other) == pytest.approx(np.sqrt((apart**2).mean()))
-    X = UNKNOWNS.prior.draw(rng, 20_000)
+    X = UNKNOWNS.white_noise.draw(rng, 20_000)
     spread = np.sqrt(UNKNOWNS.potential(X).var(axis=0).mean())
-    assert UNKNOWNS.site_std(UNKNOWNS.prior.covariance) == pytest.approx(spread, rel=0.02)
+    assert UNKNOWNS.site_std(UNKNOWNS.white_noise.covariance) == pytest.approx(spread, rel=0.02)
     covariance = np.diag(rng.uniform(0.5, 1, SIZE))
     each = UNKNOWNS.potential_std(covariance)
     assert np.sqrt((each**2).mean()) == pytest.approx(UNKNOWNS.site_std(covariance))

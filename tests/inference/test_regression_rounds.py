@@ -35,10 +35,10 @@ def test_rounds_lead_from_the_prior_to_the_truth(seed):
     """Data that go up and down across the prior: lines through them say little."""
     rng = np.random.default_rng(seed)
     slope = rng.normal(size=(SIZE, 40))
-    truth = UNKNOWNS.prior.draw(rng, 2)[0]
+    truth = UNKNOWNS.white_noise.draw(rng, 2)[0]
     waves = Linear(np.zeros(40), slope / 3, bend=1.0)
     waves.data = waves.simulate(truth) + 0.01 * rng.normal(size=40)
-    found = list(regression_rounds(waves, UNKNOWNS.prior, [0], SETTINGS))
+    found = list(regression_rounds(waves, UNKNOWNS.white_noise, [0], SETTINGS))
     assert found[0].unexplained > 50
     assert 1 < len(found) < SETTINGS.rounds
     last = found[-1]
@@ -64,7 +64,7 @@ def test_rounds_that_lead_nowhere_end(linear, nearly_noise):
 
     waves = Waves(linear.data, linear.slope)
     settings = RoundSettings(patience=2, nearly_noise=nearly_noise)
-    found = list(regression_rounds(waves, UNKNOWNS.prior, [0], settings))
+    found = list(regression_rounds(waves, UNKNOWNS.white_noise, [0], settings))
     assert len(found) < settings.rounds
     last = settings.patience
     for values, less in (
@@ -82,13 +82,13 @@ def test_rounds_go_on_as_long_as_they_know_less_than_a_step_would():
     rng = np.random.default_rng(2)
     slope = rng.normal(size=(SIZE, 40))
     waves = Linear(np.zeros(40), slope / 3, bend=1.0, variance=np.full(40, 1.0))
-    waves.data = waves.simulate(UNKNOWNS.prior.draw(rng, 2)[0]) + rng.normal(size=40)
+    waves.data = waves.simulate(UNKNOWNS.white_noise.draw(rng, 2)[0]) + rng.normal(size=40)
     counts = {}
     for near, patience in [(np.inf, 3), (2.0, 3), (0.0, 3), (0.0, 6)]:
         settings = replace(
             SETTINGS, times_gauss_newton=near, unexplained=np.inf, patience_when_straight=patience
         )
-        found = list(regression_rounds(waves, UNKNOWNS.prior, [0], settings))
+        found = list(regression_rounds(waves, UNKNOWNS.white_noise, [0], settings))
         counts[near, patience] = len(found)
         if near == 2.0:
             step = linearise(waves, found[-1].distribution.mean)[1]
@@ -102,7 +102,7 @@ def test_rounds_on_lines_do_not_count_data_twice(linear):
     """They come no closer than the posterior, which is where the first of them cannot be yet."""
     exact = posterior(linear)
     settings = RoundSettings(unexplained=0.0, rounds=15, wider=1.0, least_widening=1.0)
-    *_, last = regression_rounds(linear, UNKNOWNS.prior, [0], settings)
+    *_, last = regression_rounds(linear, UNKNOWNS.white_noise, [0], settings)
     std, least = (np.sqrt(np.diag(one.covariance)) for one in (last.distribution, exact))
     assert (std > 0.8 * least).all()
     assert (std < 5 * least).all()
@@ -201,7 +201,7 @@ def test_samples_of_earlier_proposals_count_as_if_drawn_from_the_last(linear):
             simulated.append(len(X))
             return super().simulate(X)
 
-    rng, wide = np.random.default_rng(10), UNKNOWNS.prior
+    rng, wide = np.random.default_rng(10), UNKNOWNS.white_noise
     last = Gaussian(wide.mean + 0.3 * np.sqrt(np.diag(wide.covariance)), 0.8 * wide.covariance)
     elsewhere = replace(last, mean=last.mean + 20 * np.sqrt(np.diag(wide.covariance)))
     samples = ProposalSamples(Counting(linear.data, linear.slope), most=2000)
@@ -250,7 +250,7 @@ def test_lines_leave_nothing_of_lines():
 
 
 def test_rounds_and_checkpoints_survive_json(linear, tmp_path):
-    one = next(iter(regression_rounds(linear, UNKNOWNS.prior, [0], SETTINGS)))
+    one = next(iter(regression_rounds(linear, UNKNOWNS.white_noise, [0], SETTINGS)))
     path = tmp_path / "notes.json"
     notes = Checkpoint(path, b"run")
     notes.cached("round", one.to_dict)

@@ -100,7 +100,7 @@ def test_starts_at_the_best_of_draws_end_with_one_that_fits(parts, right):
         return gauss_newton(of, x, known=known)
 
     starts = starts_of(parts, steps)
-    starts.start_at_best_of_draws(parts.unknowns.prior, 1, np.random.default_rng(1))
+    starts.start_at_best_of_draws(parts.unknowns.white_noise, 1, np.random.default_rng(1))
     assert starts.optima.fits == starts.optima.is_settled == (right is not None)
     assert len(begun) == (MORE_STARTS if right is None else right + AGREEING[1])
     assert len(np.unique(begun, axis=0)) == len(begun)

@@ -106,7 +106,7 @@ def test_only_ridges_are_straightened():
     assert isinstance(BELIEF, Uniform)
     known = replace(optimum.answer, covariance=1e-4 * np.eye(SIZE))
     assert Straightened.about(known, UNKNOWNS).parameters == {}
-    assert Straightened.about(UNKNOWNS.prior, UNKNOWNS).parameters == {}
+    assert Straightened.about(UNKNOWNS.white_noise, UNKNOWNS).parameters == {}
 
 
 @pytest.mark.parametrize("along", [-0.9, 0.9])

@@ -94,7 +94,7 @@ def test_samples_say_how_much_one_start_alone_has_found(linear, at_the_other, ex
 
 @pytest.mark.parametrize(("unknown", "expected"), [({}, True), ({"gamma": (0.1, 0.2)}, False)])
 def test_no_answer_is_surely_right_with_several_parameters(linear, unknown, expected):
-    given = replace(linear.unknowns.given, alpha=(5.0, 15.0), **unknown)
+    given = replace(linear.unknowns.prior, alpha=(5.0, 15.0), **unknown)
     measured = replace(linear, unknowns=Unknowns(given), variance=np.full(40, 1e-6))
     assert is_surely_right(measured) == expected
 

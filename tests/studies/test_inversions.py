@@ -232,7 +232,7 @@ def test_the_network_of_thirty_components_knows_something_of_fresh_wires():
     features = network_features(model_of(shipped_model(THIRTY)), observation, RoundSettings.share)
     assert features is not None
     assert features.on_grid.data.size == observation.data.size / 4
-    prior, rng = observation.unknowns.prior, np.random.default_rng(0)
+    prior, rng = observation.unknowns.white_noise, np.random.default_rng(0)
     truth = prior.draw(rng, 40)
     labels = features.features_of_samples(features.on_grid.simulate(truth), rng)
     squares = ((labels - truth) ** 2).mean(axis=0) / np.diag(prior.covariance)

@@ -176,7 +176,7 @@ def _network(
         model = prior
     else:
         model = network
-    config, sites = config_of(model), observation.unknowns.given.sites
+    config, sites = config_of(model), observation.unknowns.prior.sites
     must = f"be of wires of {sites} sites, as the prior is"
     require(config.sites == sites, "network", must, f"it is of {config.sites}")
     lacks = bool(np.isin(config.bias, observation.measurement.left_out).any())
@@ -192,7 +192,7 @@ def _network(
 def _fingerprint(observation: Observation, trained: TrainedModel | None, options: str) -> bytes:
     """Return all that an inversion depends on."""
     m = observation.measurement
-    given = observation.unknowns.given.to_dict()
+    given = observation.unknowns.prior.to_dict()
     said = json.dumps([SEARCH, given, observation.noise.tolist(), options])
     arrays = m.G, m.mu, m.B, m.bias, np.array(m.theta)
     measured = b"".join(np.ascontiguousarray(x).tobytes() for x in arrays)

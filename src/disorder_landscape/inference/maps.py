@@ -47,7 +47,7 @@ def visibility(
 
 def gap_energies(observation: Observation) -> FloatArray:
     """Return energies from zero to the largest gap that the parent may have, in meV."""
-    return np.linspace(0.0, observation.unknowns.given.extremes("delta0")[1], GAPS)
+    return np.linspace(0.0, observation.unknowns.prior.extremes("delta0")[1], GAPS)
 
 
 def gap_probability(observation: Observation, X: FloatArray, gaps: FloatArray) -> FloatArray:

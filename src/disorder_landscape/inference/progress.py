@@ -36,7 +36,7 @@ weak or the wire is short. (Of eight wires of the paper's disorder, single ones 
 
 def announce_inference(observation: Observation) -> None:
     """Say how long an inversion will take, after simulating what is measured for a second."""
-    prior = observation.unknowns.prior.mean
+    prior = observation.unknowns.white_noise.mean
     once, twice, wide = WIRES_PER_UNKNOWN
     if observation.unknowns.is_whole_landscape:
         wires = WIRES_OF_LANDSCAPE

@@ -49,7 +49,7 @@ def plain(number: float) -> str:
 def _prior_bar(result: xr.Dataset) -> float:
     """Return the prior's standard deviation of V in meV, root mean square over the sites."""
     unknowns = Unknowns(prior_of_result(result))
-    return unknowns.site_std(unknowns.prior.covariance)
+    return unknowns.site_std(unknowns.white_noise.covariance)
 
 
 def has_dissipation(result: xr.Dataset) -> bool:

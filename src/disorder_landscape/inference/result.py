@@ -48,12 +48,12 @@ def result_of(observation: Observation, outcome: Outcome, samples: int, seed: in
     dataset = with_units(xr.merge(parts)).merge(_parameters(unknowns, outcome, X))
     limits = at_limit(dataset, unknowns.parameters)
     dataset.attrs = {
-        **unknowns.given.known,
-        **unknowns.given.fixed,
+        **unknowns.prior.known,
+        **unknowns.prior.fixed,
         **evidence(observation, outcome, X),
         **left_open(unknowns, covariance, list(limits)),
         "at_limit": ", ".join(f"{name} ({limit})" for name, limit in limits.items()),
-        "prior": json.dumps(unknowns.given.to_dict()),
+        "prior": json.dumps(unknowns.prior.to_dict()),
     }
     m = observation.measurement
     return dataset if m.axis == "mu" else _over_gate(dataset, m.gate_unit)
@@ -96,8 +96,8 @@ def _potential(unknowns: Unknowns, outcome: Outcome, X: FloatArray) -> xr.Datase
         "potential_mean": ("site", unknowns.potential(mean)),
         "potential_std": ("site", unknowns.potential_std(covariance)),
     }
-    coords = {"site": np.arange(unknowns.given.sites)}
-    if (count := unknowns.given.components) is not None:
+    coords = {"site": np.arange(unknowns.prior.sites)}
+    if (count := unknowns.prior.components) is not None:
         slopes = unknowns.label_slopes(mean)[:count]
         data |= {
             "components": (("sample", "component"), unknowns.components(X)),

@@ -57,7 +57,7 @@ def drawn_device(
     The disorder of a whole landscape is drawn from the noise itself; the unknowns then are those
     of the potential that is nearest to it.
     """
-    rng, given = np.random.default_rng(seed), unknowns.given
+    rng, given = np.random.default_rng(seed), unknowns.prior
     x = rng.normal(size=len(unknowns.names))
     device = unknowns.devices(x[None], grid)[0]
     if not unknowns.is_whole_landscape:

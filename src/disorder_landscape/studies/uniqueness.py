@@ -109,7 +109,7 @@ def information_rows(setting: Setting, noises: Iterable[float]) -> list[dict[str
     unknowns = unknowns_of(config)
     truth = of_realization(unknowns, realization(config, setting.index))
     slope = _slopes(config, unknowns, truth)
-    prior = unknowns.prior.covariance
+    prior = unknowns.white_noise.covariance
     root = np.linalg.cholesky(prior)
     rows: list[dict[str, object]] = []
     for noise in noises:

@@ -222,4 +222,4 @@ def objective(observation: Observation, X: FloatArray, Y: FloatArray) -> FloatAr
         Samples, and their simulated data.
     """
     likelihood = squared_misfits(observation, Y).sum(axis=-1)
-    return np.asarray(likelihood + observation.unknowns.prior.squared_distance(X))
+    return np.asarray(likelihood + observation.unknowns.white_noise.squared_distance(X))

@@ -57,16 +57,16 @@ class Unknowns:
 
     Parameters
     ----------
-    given : Prior
+    prior : Prior
         With all parameters said (`Prior.for_measurement`).
     """
 
-    given: Prior
+    prior: Prior
 
     @cached_property
     def _disorder(self) -> tuple[FloatArray, FloatArray]:
         """L (site, unknown), and the triangle (label, unknown) of components and mean, if any."""
-        p = self.given
+        p = self.prior
         count = p.sites - 1 if p.components is None else p.components
         covariance = component_covariance(
             count, p.sites, p.correlation_length, noise_std=p.amplitude, mean_std=p.mean_std
@@ -95,12 +95,12 @@ class Unknowns:
     @property
     def is_whole_landscape(self) -> bool:
         """Whether V of every site is unknown, and not a number of components."""
-        return self.given.components is None
+        return self.prior.components is None
 
     @cached_property
     def parameters(self) -> dict[str, Distribution]:
         """The parameters that are unknown, by name."""
-        return self.given.unknown
+        return self.prior.unknown
 
     @property
     def has_several_parameters(self) -> bool:
@@ -118,8 +118,8 @@ class Unknowns:
         return (*disorder, *self.parameters)
 
     @cached_property
-    def prior(self) -> Gaussian:
-        """White noise."""
+    def white_noise(self) -> Gaussian:
+        """What the prior is of ξ."""
         return Gaussian(np.zeros(len(self.names)), np.eye(len(self.names)))
 
     def potential(self, x: FloatArray) -> FloatArray:
@@ -143,12 +143,12 @@ class Unknowns:
     def parameter(self, name: str, x: FloatArray) -> FloatArray:
         """Return a parameter of the device, known or not, shape (…,)."""
         if name not in self.parameters:
-            return np.full(x.shape[:-1], getattr(self.given, name))
+            return np.full(x.shape[:-1], getattr(self.prior, name))
         return self.parameters[name].value(x[..., self.names.index(name)])
 
     def devices(self, X: FloatArray, measurement: Measurement) -> list[Device]:
         """Return the devices of samples X (sample, unknown), as they are measured."""
-        fixed = self.given.fixed
+        fixed = self.prior.fixed
         values = [(one, self.parameter(one.name, X)) for one in PARAMETERS]
         found = []
         for k, V in enumerate(self.potential(X)):
@@ -201,7 +201,7 @@ class Unknowns:
 
     @cached_property
     def _mean_square(self) -> FloatArray:
-        return np.asarray(self.to_potential.T @ self.to_potential / self.given.sites)
+        return np.asarray(self.to_potential.T @ self.to_potential / self.prior.sites)
 
     def site_std(self, covariance: FloatArray) -> float:
         """Return the root mean square over the sites of the standard deviation of V in meV."""

@@ -59,7 +59,7 @@ def starts_of_few_unknowns(
     features, cache = network_features(model, observation, share), steps.cache
     if settings is None:
         settings = InversionSettings(RoundSettings() if features is None else WITH_NETWORK_FEATURES)
-    prior, guess = observation.unknowns.prior, None
+    prior, guess = observation.unknowns.white_noise, None
     if model is not None:
         rng = np.random.default_rng([seed, Stream.GUESS])
         guess = cached_gaussian(cache, "guess", partial(network_guess, model, observation, rng))

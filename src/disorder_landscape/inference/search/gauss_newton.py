@@ -79,7 +79,7 @@ def gauss_newton(
     goal : "optimum", "place", "better" or "few"
         The covariance is that with the slopes before the last step, which at an optimum is as good.
     """
-    prior, variance = observation.unknowns.prior, observation.variance
+    prior, variance = observation.unknowns.white_noise, observation.variance
     precision = np.linalg.inv(prior.covariance)
     x, (factor, first, largest) = start, DAMPING
     roughly, most = goal != "optimum", FEW_STEPS if goal == "few" else STEPS
@@ -145,7 +145,7 @@ def laplace(observation: Observation, mean: FloatArray, slope: FloatArray) -> Ga
 
 def precision_of(observation: Observation, slope: FloatArray) -> FloatArray:
     """Return the inverse covariance of the posterior if data were linear (unknown, unknown)."""
-    prior = np.linalg.inv(observation.unknowns.prior.covariance)
+    prior = np.linalg.inv(observation.unknowns.white_noise.covariance)
     return np.asarray((slope / observation.variance) @ slope.T + prior)
 
 

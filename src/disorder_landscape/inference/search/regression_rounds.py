@@ -183,7 +183,7 @@ def _no_samples(
 def _round(samples: ProposalSamples, proposal: Gaussian, settings: RoundSettings) -> dict[str, Any]:
     """Simulate the samples, and regress the unknowns on their data: `Round.to_dict`."""
     observation = samples.observation
-    unknowns, prior = observation.unknowns, observation.unknowns.prior
+    unknowns, prior = observation.unknowns, observation.unknowns.white_noise
     X, Y, weight, features = samples.weighted()
     root = np.linalg.cholesky(proposal.covariance)
     z = np.linalg.solve(root, (X - proposal.mean).T).T

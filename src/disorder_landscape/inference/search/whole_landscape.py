@@ -93,7 +93,7 @@ class _Way:
 
     def down(self) -> tuple[FloatArray, Goal]:
         """Go down from V = 0 or a draw of the prior."""
-        prior = self.observation.unknowns.prior
+        prior = self.observation.unknowns.white_noise
         x = prior.mean if self.name == (0,) else prior.draw(self._rng(), 2)[0]
         return self._over(LINES, x)
 
