@@ -23,8 +23,8 @@ from disorder_landscape.inference.problem.parameters import PARAMETERS
 from disorder_landscape.inference.search.few_unknowns import InversionSettings
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.learning.scaling import LabelScaler
-from disorder_landscape.model.parameters import BARRIER_RANGE, PARAMETER_RANGES
 from disorder_landscape.model.quantities import AXES, CONDUCTANCES
+from disorder_landscape.model.ranges import BARRIER_RANGE, PARAMETER_RANGES
 from odd_arguments import (
     NO_DATASETS,
     Odd,

@@ -13,7 +13,8 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from disorder_landscape.model.parameters import BARRIER_RANGE, PARAMETER_RANGES, Nanowire
+from disorder_landscape.model.parameters import Nanowire
+from disorder_landscape.model.ranges import BARRIER_RANGE, PARAMETER_RANGES
 
 ENTRY = re.compile(r"^(\w+) : .*\n((?:    .*\n?)+)", re.MULTILINE)
 """A parameter of a NumPy docstring, and what is said of it."""

@@ -28,13 +28,12 @@ from disorder_landscape.model.parameters import (
     COMPONENTS,
     MOST_SITES,
     MU_MAX,
-    PARAMETER_RANGES,
     SITES,
     TEMPERATURE,
     FloatArray,
     Nanowire,
-    checked_temperature,
 )
+from disorder_landscape.model.ranges import PARAMETER_RANGES, checked_temperature
 
 Positive = Annotated[int, Field(ge=1, le=10_000_000)]
 """Of wires, points, epochs and the like: so many can be counted through."""

@@ -10,7 +10,8 @@ import numpy as np
 
 from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.dataset.store import read_dataset
-from disorder_landscape.model.parameters import MOST_SITES, FloatArray, checked_potential
+from disorder_landscape.model.parameters import MOST_SITES, FloatArray
+from disorder_landscape.model.ranges import checked_potential
 
 NOT_NUMBERS = (ValueError, EOFError, SyntaxError, TokenError, TypeError, OverflowError)
 """What NumPy raises for files that are damaged or something else."""

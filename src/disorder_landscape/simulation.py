@@ -15,12 +15,12 @@ from disorder_landscape.model.parameters import (
     COMPONENTS,
     MOST_SITES,
     SITES,
-    STATED,
     FloatArray,
     Nanowire,
     check_leads,
 )
 from disorder_landscape.model.quantities import AXES, CONDUCTANCES, with_units
+from disorder_landscape.model.ranges import STATED
 from disorder_landscape.observables.conductance import Progress, conductance
 from disorder_landscape.observables.visibility import topological_visibility
 from disorder_landscape.parts import needs

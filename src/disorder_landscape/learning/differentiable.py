@@ -12,13 +12,9 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from disorder_landscape.arguments import ArgumentError, names_in, require, shown
-from disorder_landscape.model.parameters import (
-    TEMPERATURE,
-    FloatArray,
-    Nanowire,
-    checked_temperature,
-)
+from disorder_landscape.model.parameters import TEMPERATURE, FloatArray, Nanowire
 from disorder_landscape.model.quantities import AXES, CONDUCTANCES
+from disorder_landscape.model.ranges import checked_temperature
 from disorder_landscape.observables.conductance import conductance
 from disorder_landscape.observables.gradient import checked_grids, conductance_gradient
 

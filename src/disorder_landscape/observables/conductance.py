@@ -12,13 +12,9 @@ from numpy.typing import ArrayLike
 
 from disorder_landscape.arguments import check_progress, grid_in, number_in
 from disorder_landscape.model.hamiltonian import FULL_TURN
-from disorder_landscape.model.parameters import (
-    BOLTZMANN,
-    TEMPERATURE,
-    Nanowire,
-    checked_temperature,
-)
+from disorder_landscape.model.parameters import BOLTZMANN, TEMPERATURE, Nanowire
 from disorder_landscape.model.quantities import CONDUCTANCES, with_units
+from disorder_landscape.model.ranges import checked_temperature
 from disorder_landscape.solver import routes
 from disorder_landscape.solver.energy_grid import ENERGY_SPACING, thermal_grid
 

@@ -13,8 +13,9 @@ from numpy.typing import ArrayLike
 
 from disorder_landscape.arguments import grid_in, number_in, require, shown
 from disorder_landscape.model.hamiltonian import FULL_TURN, ComplexArray
-from disorder_landscape.model.parameters import BOLTZMANN, FloatArray, Nanowire, checked_temperature
+from disorder_landscape.model.parameters import BOLTZMANN, FloatArray, Nanowire
 from disorder_landscape.model.quantities import with_units
+from disorder_landscape.model.ranges import checked_temperature
 from disorder_landscape.solver import compiled
 from disorder_landscape.solver.compiled import GROWTH_LIMIT
 from disorder_landscape.solver.lead_continuation import continued_self_energies

@@ -10,8 +10,9 @@ from numpy.typing import ArrayLike
 
 from disorder_landscape.arguments import grid_in, number_in, require
 from disorder_landscape.model.hamiltonian import FULL_TURN
-from disorder_landscape.model.parameters import BOLTZMANN, FloatArray, Nanowire, checked_temperature
+from disorder_landscape.model.parameters import BOLTZMANN, FloatArray, Nanowire
 from disorder_landscape.model.quantities import with_units
+from disorder_landscape.model.ranges import checked_temperature
 from disorder_landscape.observables.conductance import conductance
 from disorder_landscape.observables.modes import lowest_components, separation
 from disorder_landscape.solver import compiled, routes

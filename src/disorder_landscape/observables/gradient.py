@@ -19,13 +19,9 @@ from disorder_landscape.arguments import (
     require,
     shown,
 )
-from disorder_landscape.model.parameters import (
-    TEMPERATURE,
-    FloatArray,
-    Nanowire,
-    checked_temperature,
-)
+from disorder_landscape.model.parameters import TEMPERATURE, FloatArray, Nanowire
 from disorder_landscape.model.quantities import AXES, CONDUCTANCES, QUANTITIES, with_units
+from disorder_landscape.model.ranges import checked_temperature
 from disorder_landscape.solver import gradients
 from disorder_landscape.solver.compiled import GROWTH_LIMIT
 

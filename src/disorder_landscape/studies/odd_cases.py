@@ -6,12 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from disorder_landscape.model.parameters import (
-    BOLTZMANN,
-    PARAMETER_RANGES,
-    FloatArray,
-    Nanowire,
-)
+from disorder_landscape.model.parameters import BOLTZMANN, FloatArray, Nanowire
+from disorder_landscape.model.ranges import PARAMETER_RANGES
 from disorder_landscape.solver.compiled import core
 from disorder_landscape.solver.routes import BELOW_GAP
 

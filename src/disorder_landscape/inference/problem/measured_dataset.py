@@ -17,14 +17,14 @@ from disorder_landscape.inference.problem.measured_numbers import (
 )
 from disorder_landscape.inference.problem.measurement import Measurement
 from disorder_landscape.model.hamiltonian import FULL_TURN
-from disorder_landscape.model.parameters import (
+from disorder_landscape.model.parameters import Nanowire
+from disorder_landscape.model.quantities import AXES, CONDUCTANCES
+from disorder_landscape.model.ranges import (
     PARAMETER_RANGES,
     STATED,
-    Nanowire,
     checked_barrier,
     checked_temperature,
 )
-from disorder_landscape.model.quantities import AXES, CONDUCTANCES
 
 OF_ALL_NETWORKS = tuple(name for name in STATED if name not in ("alpha", "lead_mu"))
 """Those that all wires of this program's networks have in common."""

@@ -10,8 +10,9 @@ from scipy.constants import e, h
 
 from disorder_landscape.arguments import grid_in, require
 from disorder_landscape.inference.problem.measurement import Measurement
-from disorder_landscape.model.parameters import PARAMETER_RANGES, FloatArray
+from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.model.quantities import AXES, CONDUCTANCES
+from disorder_landscape.model.ranges import PARAMETER_RANGES
 
 QUANTUM = e**2 / h
 """e²/h in S."""

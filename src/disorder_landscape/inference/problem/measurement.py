@@ -10,11 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from disorder_landscape.config import DatasetConfig
-from disorder_landscape.model.parameters import (
-    TEMPERATURE,
-    FloatArray,
-    Nanowire,
-)
+from disorder_landscape.model.parameters import TEMPERATURE, FloatArray, Nanowire
 from disorder_landscape.model.quantities import CONDUCTANCES
 from disorder_landscape.observables.conductance import conductance
 

@@ -9,15 +9,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from disorder_landscape.model.parameters import (
-    BARRIER_RANGE,
-    COLDEST,
-    HOTTEST,
-    PARAMETER_RANGES,
-    TEMPERATURE,
-    FloatArray,
-    Nanowire,
-)
+from disorder_landscape.model.parameters import TEMPERATURE, FloatArray, Nanowire
+from disorder_landscape.model.ranges import BARRIER_RANGE, COLDEST, HOTTEST, PARAMETER_RANGES
 
 
 @dataclass

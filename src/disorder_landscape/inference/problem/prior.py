@@ -34,12 +34,12 @@ from disorder_landscape.model.disorder import (
 )
 from disorder_landscape.model.parameters import (
     MOST_SITES,
-    PARAMETER_RANGES,
     SITES,
     Nanowire,
     check_leads,
     gap_in_field,
 )
+from disorder_landscape.model.ranges import PARAMETER_RANGES
 
 Given = float | tuple[float, float] | Distribution | None
 ALL = "all"

@@ -26,7 +26,8 @@ from disorder_landscape.inference.verification.controls import (
     disorder_model,
     wires_like,
 )
-from disorder_landscape.model.parameters import PARAMETER_RANGES, Nanowire
+from disorder_landscape.model.parameters import Nanowire
+from disorder_landscape.model.ranges import PARAMETER_RANGES
 
 
 class Compared(NamedTuple):
