@@ -109,6 +109,7 @@ def infer(
         gap in meV. Attributes: verdict ("converged", "not converged" or "not described by the
         model"), excess (of χ² above its mean, in its standard deviations), log_evidence,
         effective_sample_size (of as many samples as are returned), attempts, rounds, start, noise,
+        theta, config_hash (of a model's dataset),
         prior and settings (as JSON: what is known and not, and the temperature and barriers that
         the measurement stated), each known parameter, not_fixed, not_told_apart and at_limit: what
         the data leave open, and what is where the prior ends. With gate instead of mu dims are

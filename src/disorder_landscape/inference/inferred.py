@@ -11,9 +11,10 @@ import numpy as np
 import xarray as xr
 
 from disorder_landscape.arguments import ArgumentError, number_in, reals, require
+from disorder_landscape.inference.problem.agreement import check_agreement
 from disorder_landscape.inference.problem.measurement import PAPERS_SETTINGS, Measurement
 from disorder_landscape.inference.problem.parameters import PARAMETERS, Setup, nanowire
-from disorder_landscape.inference.problem.prior import Prior, check_agreement
+from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.model.parameters import FloatArray, Nanowire
 
 MUST = "be a result of infer"

@@ -8,8 +8,6 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, Self
 
-import numpy as np
-
 from disorder_landscape.arguments import (
     number_in,
     require,
@@ -17,6 +15,7 @@ from disorder_landscape.arguments import (
     whole_number_in,
 )
 from disorder_landscape.config import DatasetConfig, read_toml
+from disorder_landscape.inference.problem.agreement import check_agreement, check_biases
 from disorder_landscape.inference.problem.distributions import (
     Belief,
     Distribution,
@@ -37,7 +36,6 @@ from disorder_landscape.model.parameters import (
     SITES,
     Nanowire,
     check_leads,
-    gap_in_field,
 )
 from disorder_landscape.model.ranges import PARAMETER_RANGES
 
@@ -188,22 +186,9 @@ class Prior:
             else:
                 check_agreement(name, belief, stated)
         whole = replace(self, **said)
-        whole._check_biases(measurement)
+        gap, critical_field = (whole.extremes(name)[0] for name in ("delta0", "critical_field"))
+        check_biases(measurement, gap, critical_field, max(map(abs, whole.extremes("bias_offset"))))
         return whole
-
-    def _check_biases(self, measurement: Measurement) -> None:
-        """Require that all biases lie below the gap, whatever the unknowns are."""
-        gap, critical_field = (self.extremes(name)[0] for name in ("delta0", "critical_field"))
-        field = float(abs(measurement.B).max())
-        least = gap_in_field(gap, critical_field, field)
-        offset = max(map(abs, self.extremes("bias_offset")))
-        largest = float(abs(measurement.bias).max())
-        must = "lie below the least gap that the parent superconductor may have, offset included"
-        but = (
-            f"{largest:.4g} + {offset:.4g} meV is not below {least:.4g} meV at {field:g} T: leave "
-            "such biases out, or narrow the prior of delta0, critical_field or bias_offset"
-        )
-        require(largest + offset < least, "bias", must, but)
 
     def extremes(self, name: str) -> tuple[float, float]:
         """Return the least and the largest value of a parameter that is said."""
@@ -265,17 +250,3 @@ class Prior:
 def _range(name: str) -> tuple[float, float, str]:
     one = BY_NAME[name]
     return one.low, one.high, one.unit
-
-
-def check_agreement(name: str, belief: Belief, stated: float | None) -> None:
-    """Require that prior and measurement do not say different things of a parameter."""
-    if stated is None:
-        return
-    if isinstance(belief, float):
-        must = f"be {belief:g}, as in the prior"
-        same = bool(np.isclose(stated, belief, rtol=1e-6, atol=1e-12))
-        require(same, name, must, f"the measurement states {stated:g}")
-        return
-    low, high = belief.range
-    must = f"lie from {low:g} to {high:g}, as in the prior"
-    require(low <= stated <= high, name, must, f"the measurement states {stated:g}")
