@@ -1,5 +1,7 @@
 """What is told of a posterior: evidence, what is left open, gaps, and devices with a gate."""
 
+import re
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -13,7 +15,7 @@ from disorder_landscape.inference.maxima import maxima_of
 from disorder_landscape.inference.optimum import Optimum
 from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.problem.distributions import Normal, Uniform
-from disorder_landscape.inference.report import shares_as_text, summary
+from disorder_landscape.inference.report import shares_as_text, summary, verdict_sentence
 from disorder_landscape.inference.result import at_limit, evidence, left_open, moments
 from disorder_landscape.model.quantities import CONDUCTANCES
 from linear_data import DATA, SIZE, UNKNOWNS, posterior
@@ -131,6 +133,8 @@ def test_a_device_is_found_with_its_offsets(device, inferred):
         assert_allclose(inferred[name].std(), inferred[f"{name}_std"], rtol=0.4)
     assert inferred["lever_arm"].attrs["units"] == "meV/V"
     assert "mean and mu_offset" in inferred.attrs["not_told_apart"]
+    said = verdict_sentence(inferred)
+    assert re.search(r"V is known to \d+ µeV .*, and to [0-9.]+ µeV but for its mean\.", said)
     shape = inferred["potential_mean"] - inferred["potential_mean"].mean()
     assert np.sqrt(((shape - wire.potential) ** 2).mean()) < 0.002
     assert inferred.sizes["maximum"] == 1

@@ -15,6 +15,8 @@ from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED, NOT_D
 SURE = 0.95
 """What at least this share of the samples has is taken for sure."""
 
+MOSTLY_ITS_MEAN = 0.5
+"""What is uncertain of V is mostly its mean, if the error bar without it is less than this part."""
 SAID = 4
 """Of so many maxima of the posterior the shares are said."""
 
@@ -62,6 +64,12 @@ def error_bar(result: xr.Dataset) -> float:
     return 1e3 * float(np.sqrt((result["potential_std"] ** 2).mean()))
 
 
+def shape_error_bar(result: xr.Dataset) -> float:
+    """Return that of V less its mean over the sites in µeV, from the samples."""
+    V = result["potential"]
+    return 1e3 * float(np.sqrt((V - V.mean("site")).var("sample").mean()))
+
+
 def misfits(result: xr.Dataset) -> list[tuple[str, str, str]]:
     """Return as text the name of each channel, its misfit and its noise in e²/h, if measured."""
     channels = zip(
@@ -95,6 +103,8 @@ def verdict_sentence(result: xr.Dataset) -> str:
     if verdict == CONVERGED:
         bar, before = error_bar(result), 1e3 * _prior_bar(result)
         known = f"V is known to {plain(bar)} µeV (r.m.s. over the sites)"
+        if (shape := shape_error_bar(result)) < MOSTLY_ITS_MEAN * bar:
+            known += f", and to {plain(shape)} µeV but for its mean"
         if bar > OPEN * before:
             known += f", hardly better than before ({plain(before)} µeV)"
         explain = "this wire explains the data within their noise"
