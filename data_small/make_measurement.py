@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 
 from disorder_landscape import conductance
-from disorder_landscape.chain import FIVE, shipped_model
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.dataset.store import provenance, write_dataset
 from disorder_landscape.learning.model import load_model_config
 from disorder_landscape.model.quantities import CONDUCTANCES, QUANTITIES
+from disorder_landscape.runs import FIVE, shipped_model
 
 SEED, INDEX = 2026, 1
 """Of the wire, which is none of any dataset."""

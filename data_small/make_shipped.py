@@ -11,7 +11,9 @@ import shutil
 import sys
 from pathlib import Path
 
-from disorder_landscape.chain import (
+from disorder_landscape.chain import read_test_set
+from disorder_landscape.dataset.store import provenance, write_dataset
+from disorder_landscape.runs import (
     MODELS,
     NOISY,
     NOISY_FROM,
@@ -19,11 +21,9 @@ from disorder_landscape.chain import (
     Run,
     open_run,
     preset_run,
-    read_test_set,
     shipped_model,
     shipped_test_set,
 )
-from disorder_landscape.dataset.store import provenance, write_dataset
 
 PRESETS = {"full": 0.0, NOISY: NOISY_FROM}
 """Whose runs are shipped, and for errors from how many e²/h on; the test sets are the first's."""

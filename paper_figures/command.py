@@ -12,11 +12,12 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from disorder_landscape.arguments import ArgumentError
-from disorder_landscape.chain import FIVE, Run, evaluation, preset_run
+from disorder_landscape.chain import evaluation
 from disorder_landscape.config import Config
 from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
 from disorder_landscape.model.quantities import DRAWN
 from disorder_landscape.pictures import write_picture
+from disorder_landscape.runs import FIVE, Run, preset_run
 from plotting import paper_style
 
 EVALUATED = [f"{name}{end}" for name in DRAWN for end in ("", "_predicted")]

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import argparse
 
-from disorder_landscape.chain import preset_run
 from disorder_landscape.dataset import shards
 from disorder_landscape.dataset.realizations import simulate
 from disorder_landscape.estimates import announce_repeated
 from disorder_landscape.machine import cores
+from disorder_landscape.runs import preset_run
 from disorder_landscape.solver import compiled
 
 WORKERS = 2

@@ -18,8 +18,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from command import Request, figure_script
-from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.claim import paper_value
+from disorder_landscape.runs import REPOSITORY
 from disorder_landscape.studies.crossings import (
     PowerLaw,
     fit_power_law,

@@ -21,9 +21,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from command import Request, figure_script
-from disorder_landscape.chain import FIVE, TEN
 from disorder_landscape.claims.study_tables import INVERSIONS, UNIQUENESS
 from disorder_landscape.inference.verdict import CONVERGED
+from disorder_landscape.runs import FIVE, TEN
 from plotting import FULL_WIDTH, INPUT, PREDICTION, inches
 
 NAMES = {FIVE: "5 components and α", TEN: "10 components"}

@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, NullLocator
 
 from command import Request, figure_script
-from disorder_landscape.chain import REPOSITORY
+from disorder_landscape.runs import REPOSITORY
 from plotting import FULL_WIDTH, network_panels, trainings
 
 SHIFT = 1.07

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 import figure_3_conductance_bias as figure_3
 from command import Request, figure_script
 from conductance_maps import blocks_height, draw_conductance_blocks
-from disorder_landscape.chain import TEN
+from disorder_landscape.runs import TEN
 from disorder_panels import HEIGHT, disorder_data, draw_disorder
 from plotting import FULL_WIDTH
 from wires import drawn_realizations

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from command import figure_script
-from disorder_landscape.chain import TEN
+from disorder_landscape.runs import TEN
 from figure_S5_conductance_mu import data, draw
 
 

@@ -11,12 +11,12 @@ from html import escape
 from pathlib import Path
 
 from disorder_landscape.arguments import ArgumentError, require
-from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.claim import Stored, load_claims
 from disorder_landscape.claims.findings import Finding, Outcome, stored_findings
 from disorder_landscape.claims.sources import MEASURED_FILE
 from disorder_landscape.claims.table import COLUMNS, number, rows, tally
 from disorder_landscape.dataset.store import read_dataset
+from disorder_landscape.runs import REPOSITORY
 
 FIGURES = REPOSITORY / "build" / "figures"
 SCRIPTS = REPOSITORY / "paper_figures"

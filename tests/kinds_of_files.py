@@ -5,7 +5,6 @@ import json
 import numpy as np
 
 from disorder_landscape import conductance
-from disorder_landscape.chain import FIVE, shipped_model
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset import shards
 from disorder_landscape.dataset.mapped import MappedConductances
@@ -17,6 +16,7 @@ from disorder_landscape.learning.checkpoints import load_checkpoint, save_checkp
 from disorder_landscape.learning.curves import Epoch
 from disorder_landscape.learning.model import load_model
 from disorder_landscape.learning.networks.build import build_network
+from disorder_landscape.runs import FIVE, shipped_model
 from disorder_landscape.studies.rows import read_rows, write_rows
 
 CONFIG = DatasetConfig(realizations=4, components=2, sites=20, mu_points=3, B_points=3)

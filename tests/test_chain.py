@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from disorder_landscape import ArgumentError, Nanowire, chain, conductance, predict
+from disorder_landscape import ArgumentError, Nanowire, chain, conductance, predict, runs
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.learning.model import load_model_config
 from disorder_landscape.model.quantities import CONDUCTANCES
@@ -42,7 +42,7 @@ def build(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def run(build):
-    return chain.open_run(CONFIG, build)
+    return runs.open_run(CONFIG, build)
 
 
 def test_the_reduced_run_reaches_its_score(run):
@@ -62,7 +62,7 @@ def test_the_predicted_wire_conducts_like_the_true_one(tmp_path):
 
     Of the shipped network, R² = 0.994: what the training of a test makes depends on the machine.
     """
-    evaluation = chain.evaluation(chain.preset_run("shipped", tmp_path, chain.FIVE))
+    evaluation = chain.evaluation(runs.preset_run("shipped", tmp_path, runs.FIVE))
     ratios = []
     for i in range(10):
         one, following = evaluation.isel(realization=i), evaluation.isel(realization=i + 1)
@@ -125,32 +125,32 @@ def test_a_measurement_on_another_grid_is_refused(run):
         predict(run.model_folder, G)
 
 
-@pytest.mark.parametrize(("model", "R2"), [(chain.FIVE, 0.99), (chain.TEN, 0.96)])
+@pytest.mark.parametrize(("model", "R2"), [(runs.FIVE, 0.99), (runs.TEN, 0.96)])
 def test_a_shipped_model_predicts_its_shipped_test_set(model, R2, tmp_path):
-    shipped = chain.evaluation(chain.preset_run("shipped", tmp_path, model))
+    shipped = chain.evaluation(runs.preset_run("shipped", tmp_path, model))
     assert shipped.sizes["realization"] == 200
     assert shipped.attrs["R2"] > R2
-    assert load_model_config(chain.shipped_model(model)).dataset.alpha_is_label == (
-        model == chain.FIVE
+    assert load_model_config(runs.shipped_model(model)).dataset.alpha_is_label == (
+        model == runs.FIVE
     )
 
 
 def test_presets_without_ten_components_draw_the_shipped_ones_their_way():
-    run = chain.preset_run("smoke", model=chain.TEN)
+    run = runs.preset_run("smoke", model=runs.TEN)
     assert run.shipped
     assert run.config.dataset.components == 10
-    assert run.config.figures == chain.preset_run("smoke").config.figures
-    assert not chain.preset_run("full", model=chain.TEN).shipped
-    assert not chain.preset_run("full", model=chain.FIVE).shipped
-    assert not chain.preset_run("small").shipped
+    assert run.config.figures == runs.preset_run("smoke").config.figures
+    assert not runs.preset_run("full", model=runs.TEN).shipped
+    assert not runs.preset_run("full", model=runs.FIVE).shipped
+    assert not runs.preset_run("small").shipped
 
 
 def test_the_shipped_files_are_those_of_the_checksums():
     subprocess.run(
         ["sha256sum", "--check", "--quiet", "SHA256SUMS"],
-        cwd=chain.REPOSITORY / "data_small",
+        cwd=runs.REPOSITORY / "data_small",
         check=True,
     )
-    folders = (chain.REPOSITORY / name for name in ("data_small", "results"))
+    folders = (runs.REPOSITORY / name for name in ("data_small", "results"))
     files = (path for folder in folders for path in folder.rglob("*") if path.is_file())
     assert sum(path.stat().st_size for path in files) < 60e6  # what the repository may hold

@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 
 from disorder_landscape import ArgumentError, Nanowire, conductance
-from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims import __main__ as command_line
 from disorder_landscape.claims import (
     measurements,
@@ -34,6 +33,7 @@ from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.learning.scaling import LabelScaler
 from disorder_landscape.model.disorder import disorder_realization
 from disorder_landscape.observables import topological_overlap
+from disorder_landscape.runs import REPOSITORY
 from disorder_landscape.studies.rows import as_text, write_rows
 from disorder_landscape.studies.study import study_names
 from disorder_landscape.studies.trainings_table import Result

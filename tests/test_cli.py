@@ -10,9 +10,9 @@ import xarray as xr
 
 from command_line import landscape
 from disorder_landscape import ArgumentError, Nanowire, Prior, conductance
-from disorder_landscape.chain import FIVE, shipped_model
 from disorder_landscape.model.quantities import CONDUCTANCES
 from disorder_landscape.potential_file import read_potential
+from disorder_landscape.runs import FIVE, shipped_model
 
 SMALL = ["--sites", "30", "--B", "0:0.8:5", "--bias", "-0.02,0,0.02"]
 

@@ -6,8 +6,8 @@ import re
 import sys
 from dataclasses import fields
 
-from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.model.parameters import Nanowire
+from disorder_landscape.runs import REPOSITORY
 
 sys.path.insert(0, str(REPOSITORY / "docs" / "extensions"))  # as docs/conf.py does
 

@@ -29,9 +29,9 @@ import disorder_landscape.learning.model
 import disorder_landscape.learning.training
 import disorder_landscape.studies.runner
 from command_line import landscape
-from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.files import write_json
 from disorder_landscape.model.quantities import CONDUCTANCES
+from disorder_landscape.runs import REPOSITORY
 from disorder_landscape.studies.study import Derived
 from odd_arguments import argument_sets, datasets, in_time, tried
 from test_fuzz_functions import (
@@ -511,12 +511,12 @@ def test_generate_makes_a_dataset_or_refuses(count, refused_or_done):
 
 def built(folder=None):
     """Return the files of a dataset that TINY describes."""
-    from disorder_landscape import chain
+    from disorder_landscape import chain, runs
     from disorder_landscape.executors.local import IN_THIS_PROCESS
 
     with tempfile.TemporaryDirectory() as name:
         (Path(name) / "run.toml").write_text(toml(TINY))
-        run = chain.open_run(Path(name) / "run.toml", Path(name) / "build")
+        run = runs.open_run(Path(name) / "run.toml", Path(name) / "build")
         chain.generate(run, IN_THIS_PROCESS)
         paths = list(Path(name).rglob("shard-*.nc"))
         return {str(path.relative_to(name)): path.read_bytes() for path in paths}

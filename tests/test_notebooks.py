@@ -7,7 +7,7 @@ import jupytext
 import pytest
 from matplotlib import pyplot as plt
 
-from disorder_landscape.chain import REPOSITORY
+from disorder_landscape.runs import REPOSITORY
 
 sys.path.insert(0, str(REPOSITORY / "report"))  # as if run as a script
 

@@ -1,23 +1,14 @@
-"""The chain of one run: dataset, trained network, test realizations with their predictions.
-
-A run is a configuration and a folder of results: build/<name>/model, build/<name>/evaluation.nc.
-Its dataset is in build/datasets, which all runs and studies share. A preset has a run for each of
-the paper's two models, of five components and α, configs/<preset>.toml, and of ten components,
-configs/<preset>_ten_components.toml; where there is no such file, the shipped network stands for
-it. What is shipped needs no dataset: models and test sets are in data_small.
-"""
+"""The chain of one run: dataset, trained network, test realizations with their predictions."""
 
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass
 from pathlib import Path
 
 import xarray as xr
 from tqdm import tqdm
 
 from disorder_landscape.arguments import ArgumentError, require
-from disorder_landscape.config import Config, DatasetConfig, load_config
 from disorder_landscape.dataset import shards
 from disorder_landscape.dataset.realizations import simulate
 from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
@@ -25,119 +16,12 @@ from disorder_landscape.estimates import announce_repeated
 from disorder_landscape.executors import slurm
 from disorder_landscape.executors.executor import WHOLE, Executor, Share
 from disorder_landscape.executors.local import LocalProcesses
-from disorder_landscape.learning.model_files import NETWORK, SCALER, is_trained
+from disorder_landscape.learning.model_files import NETWORK, SCALER
 from disorder_landscape.locks import kept_from_others
 from disorder_landscape.model.parameters import NOISE_FLOOR
 from disorder_landscape.model.quantities import DRAWN, with_units
+from disorder_landscape.runs import Run, shipped_test_set
 from disorder_landscape.solver import compiled
-
-REPOSITORY = Path(__file__).resolve().parents[2]
-SHIPPED = "shipped"
-FIVE, TEN = MODELS = "five_components_and_alpha", "ten_components"
-"""The paper's two models, as they are named where they are shipped."""
-THIRTY = "thirty_components"
-"""A network to start inversions from, which is shipped too. No figure is drawn of it."""
-NOISY = "noisy"
-"""The preset of networks for measurements with errors, which are shipped too: FIVE_noisy, …"""
-NOISY_FROM = 0.002
-"""In e²/h: for errors of this and more they are the ones to use; the others know 0.001."""
-
-
-def dataset_folder(config: DatasetConfig, build: Path) -> Path:
-    """Return the folder of a dataset's shards, whoever asks for it."""
-    return build / "datasets" / config.hash
-
-
-@dataclass(frozen=True)
-class Run:
-    """A configuration and the folder of its results.
-
-    Parameters
-    ----------
-    name : str
-        The configuration file's, or the shipped model's.
-    config : Config
-    folder : Path
-        Of everything that is made.
-    shipped : bool
-        Whether model and test set are those in data_small.
-    """
-
-    name: str
-    config: Config
-    folder: Path
-    shipped: bool = False
-
-    @property
-    def dataset_folder(self) -> Path:
-        """Folder of the shards."""
-        return dataset_folder(self.config.dataset, self.folder.parent)
-
-    @property
-    def model_folder(self) -> Path:
-        """Folder of the trained network."""
-        return shipped_model(self.name) if self.shipped else self.folder / "model"
-
-    @property
-    def is_trained(self) -> bool:
-        """Whether the folder of the network holds a finished training."""
-        return is_trained(self.model_folder)
-
-    @property
-    def evaluation_file(self) -> Path:
-        """Test realizations and predictions."""
-        return self.folder / "evaluation.nc"
-
-
-def open_run(config: str | Path, build: str | Path = "build") -> Run:
-    """Return the run of a configuration file; its name is the file's."""
-    return Run(Path(config).stem, load_config(config), Path(build) / Path(config).stem)
-
-
-def shipped_model(model: str, noise: float = 0.0) -> Path:
-    """Return the folder of a shipped network, the one for measurements with such errors in e²/h."""
-    name = model if noise < NOISY_FROM else f"{model}_{NOISY}"
-    return REPOSITORY / "data_small" / "models" / name
-
-
-def shipped_test_set(model: str) -> Path:
-    """Return the file of the test realizations that are shipped with a network."""
-    return REPOSITORY / "data_small" / f"{model}_test.nc"
-
-
-def preset_run(preset: str, build: str | Path = "build", model: str = FIVE) -> Run:
-    """Return a preset's run of one of the paper's two models.
-
-    Parameters
-    ----------
-    preset : str
-        A name in configs/, or "shipped".
-    build : path
-        Where the folder of the run is, or will be.
-    model : {"five_components_and_alpha", "ten_components"}
-        Presets that have a configuration of one of them only take the shipped network for the
-        other, and draw both alike.
-
-    Raises
-    ------
-    ArgumentError
-        If there is no such preset.
-    """
-    there = {path.stem for path in (REPOSITORY / "configs").glob("*.toml")}
-    presets = sorted({name.removesuffix(f"_{TEN}") for name in there - {THIRTY}})
-    must = f"be one of {', '.join([*presets, SHIPPED])}"
-    require(preset in (*presets, SHIPPED), "preset", must, f"it is '{preset}'")
-    name = preset if model == FIVE else f"{preset}_{model}"
-    if name in there:
-        return open_run(REPOSITORY / "configs" / f"{name}.toml", build)
-    from disorder_landscape.learning.model import load_model_config
-
-    config = load_model_config(shipped_model(model))
-    other = {preset, f"{preset}_{TEN}"} & there
-    if other:
-        figures = load_config(REPOSITORY / "configs" / f"{other.pop()}.toml").figures
-        config = config.model_copy(update={"figures": figures})
-    return Run(model, config, Path(build) / SHIPPED / model, shipped=True)
 
 
 def jobs_folder(run: Run) -> Path:

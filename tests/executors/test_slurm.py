@@ -15,10 +15,10 @@ import pytest
 from typer.testing import CliRunner
 
 from disorder_landscape import ArgumentError
-from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.cli import app
 from disorder_landscape.executors import slurm
 from disorder_landscape.executors.site import Site, load_site
+from disorder_landscape.runs import REPOSITORY
 
 SITE = Site(partition="main", jobs=8, minutes=90, memory_gb=1.5, setup=("module load python",))
 

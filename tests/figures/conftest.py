@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from disorder_landscape.chain import preset_run
 from disorder_landscape.config import Config
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.model.disorder import potential_from_components
+from disorder_landscape.runs import preset_run
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "paper_figures"))  # as if run as scripts
 

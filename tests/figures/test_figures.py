@@ -17,8 +17,8 @@ from scipy.constants import physical_constants
 import disorder_landscape as dl
 from command import Request
 from disorder_landscape.arguments import ArgumentError
-from disorder_landscape.chain import preset_run
 from disorder_landscape.model.disorder import cosine_components
+from disorder_landscape.runs import preset_run
 from disorder_landscape.solver.compiled import core
 from plotting import COLUMN, FULL_WIDTH, paper_style
 

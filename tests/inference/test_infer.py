@@ -11,7 +11,6 @@ from threadpoolctl import threadpool_info, threadpool_limits
 
 import disorder_landscape as dl
 from disorder_landscape import ArgumentError, Nanowire, conductance
-from disorder_landscape.chain import FIVE, shipped_model
 from disorder_landscape.config import Config, DatasetConfig, TrainingConfig
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.files import read_json
@@ -31,6 +30,7 @@ from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED, NOT_D
 from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.learning.scaling import LabelScaler
 from disorder_landscape.model.quantities import CONDUCTANCES
+from disorder_landscape.runs import FIVE, shipped_model
 from disorder_landscape.studies.truth import unknowns_of
 
 NOISE = 0.001

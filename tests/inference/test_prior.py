@@ -12,7 +12,6 @@ from scipy.stats import kstest, norm, uniform
 import disorder_landscape as dl
 import disorder_landscape.inference.problem.observation as observation_module
 from disorder_landscape import ArgumentError
-from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.inference.given import observation_of
 from disorder_landscape.inference.problem.distributions import Normal, Uniform
@@ -23,6 +22,7 @@ from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.search.gauss_newton import linearise
 from disorder_landscape.model.disorder import smooth_noise
 from disorder_landscape.model.quantities import CONDUCTANCES
+from disorder_landscape.runs import REPOSITORY
 from disorder_landscape.studies.truth import labels as labels_of
 from disorder_landscape.studies.truth import of_device
 

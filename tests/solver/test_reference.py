@@ -7,9 +7,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 from disorder_landscape import Nanowire, conductance, topological_visibility
-from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.dataset.store import read_dataset
 from disorder_landscape.model.quantities import CONDUCTANCES
+from disorder_landscape.runs import REPOSITORY
 
 REFERENCE = read_dataset(Path(REPOSITORY) / "data_small" / "kwant_reference.nc")
 GRID = {name: REFERENCE[name].to_numpy() for name in ("mu", "B", "bias")}

@@ -14,8 +14,8 @@ from numpy.testing import assert_allclose
 
 import arithmetics
 from disorder_landscape import Nanowire
-from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.model.parameters import BIAS, BOLTZMANN, TEMPERATURE
+from disorder_landscape.runs import REPOSITORY
 from disorder_landscape.solver import compiled
 from random_wires import random_wire
 

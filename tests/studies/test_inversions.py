@@ -10,7 +10,6 @@ import pytest
 from scipy.stats import chi2
 
 from disorder_landscape import ArgumentError
-from disorder_landscape.chain import FIVE, TEN, THIRTY, shipped_model
 from disorder_landscape.claims.claim import ResultMissingError
 from disorder_landscape.claims.derived import (
     fixed_combinations,
@@ -36,6 +35,7 @@ from disorder_landscape.inference.search.network_features import network_feature
 from disorder_landscape.inference.search.regression_rounds import RoundSettings
 from disorder_landscape.inference.verdict import CONVERGED, NOT_CONVERGED
 from disorder_landscape.model.parameters import Nanowire
+from disorder_landscape.runs import FIVE, TEN, THIRTY, shipped_model
 from disorder_landscape.studies import inversions, runner, unmodelled
 from disorder_landscape.studies.calibration import coverage, joint_coverage
 from disorder_landscape.studies.fresh_wires import (

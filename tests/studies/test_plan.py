@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from disorder_landscape.arguments import ArgumentError
-from disorder_landscape.chain import REPOSITORY
+from disorder_landscape.runs import REPOSITORY
 from disorder_landscape.studies.plan import load_study
 from disorder_landscape.studies.study import Place, study_names
 from disorder_landscape.studies.trainings import PlannedRun

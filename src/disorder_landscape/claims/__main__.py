@@ -18,7 +18,6 @@ from typing import Any
 from tqdm import tqdm
 
 from disorder_landscape.arguments import ArgumentError
-from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.claim import Claim, claim_of, load_claims
 from disorder_landscape.claims.findings import Finding, stored_findings, with_measured
 from disorder_landscape.claims.pages import PAGES, write_pages
@@ -38,6 +37,7 @@ from disorder_landscape.claims.table import (
 )
 from disorder_landscape.files import check_writable, replacing, write_json
 from disorder_landscape.machine import cores, cpu_name
+from disorder_landscape.runs import REPOSITORY
 
 VERSIONS = ("disorder-landscape", "numpy", "scipy", "keras", "kwant")
 

@@ -11,8 +11,8 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from disorder_landscape.arguments import ArgumentError
-from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.value import Value
+from disorder_landscape.runs import REPOSITORY
 
 CLAIMS_FILE = REPOSITORY / "results" / "claims.toml"
 

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 
 from disorder_landscape.arguments import require
-from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.claim import claim_of, load_claims
 from disorder_landscape.claims.table import markdown, number
+from disorder_landscape.runs import REPOSITORY
 from disorder_landscape.studies.trainings_table import Result, read_table
 
 TABLE = REPOSITORY / "results" / "conventions.csv"

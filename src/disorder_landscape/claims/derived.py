@@ -14,11 +14,11 @@ import numpy as np
 import pandas as pd
 from scipy.stats import permutation_test, spearmanr
 
-from disorder_landscape.chain import TEN
 from disorder_landscape.claims.claim import ResultMissingError
 from disorder_landscape.claims.value import FEWEST_SEEDS, Value, with_resampled
 from disorder_landscape.inference.verdict import CONVERGED
 from disorder_landscape.model.parameters import FloatArray
+from disorder_landscape.runs import TEN
 from disorder_landscape.studies.components import THIRTY_COMPONENTS
 from disorder_landscape.studies.crossings import (
     R2_AIMED_AT,

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.claim import (
     Claim,
     Measured,
@@ -16,6 +15,7 @@ from disorder_landscape.claims.claim import (
     Verdict,
 )
 from disorder_landscape.claims.sources import provenance, stored_value
+from disorder_landscape.runs import REPOSITORY
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,6 @@ import numpy as np
 import xarray as xr
 
 from disorder_landscape.arguments import require
-from disorder_landscape.chain import NOISY, shipped_model, shipped_test_set
 from disorder_landscape.dataset.shards import VARIABLES
 from disorder_landscape.dataset.store import read_dataset
 from disorder_landscape.learning.curves import training_seconds
@@ -19,6 +18,7 @@ from disorder_landscape.learning.scaling import conductance_array, label_array
 from disorder_landscape.model.parameters import FloatArray, Nanowire
 from disorder_landscape.observables.conductance import conductance
 from disorder_landscape.observables.topological_overlap import topological_points
+from disorder_landscape.runs import NOISY, shipped_model, shipped_test_set
 from disorder_landscape.studies.noise import CHANNELS_WITH_ERRORS, with_errors
 
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from disorder_landscape.arguments import require
-from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.claim import load_claims
 from disorder_landscape.claims.conventions import conventions_table
 from disorder_landscape.claims.findings import stored_findings
@@ -19,6 +18,7 @@ from disorder_landscape.claims.study_tables import (
 )
 from disorder_landscape.claims.table import SUMMARY_COLUMNS, markdown, section, summary, tally
 from disorder_landscape.files import replacing
+from disorder_landscape.runs import REPOSITORY
 
 
 @dataclass(frozen=True)

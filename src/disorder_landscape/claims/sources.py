@@ -18,11 +18,11 @@ from statistics import median
 from typing import Any
 
 from disorder_landscape.arguments import ArgumentError, require
-from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.claim import Claim, Measured, ResultMissingError, Stored
 from disorder_landscape.claims.derived import DERIVED
 from disorder_landscape.claims.value import Value, mean_over_seeds
 from disorder_landscape.files import read_json, write_json
+from disorder_landscape.runs import REPOSITORY
 
 MEASURED_FILE = "results/measured.json"
 """What `make claims` has measured before, from the root of the repository."""

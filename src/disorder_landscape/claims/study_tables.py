@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pandas as pd
 
-from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.claims.table import markdown
 from disorder_landscape.inference.verdict import CONVERGED
 from disorder_landscape.inference.verification.comparison import UNLIKELY
+from disorder_landscape.runs import REPOSITORY
 from disorder_landscape.studies.calibration import coverage, joint_coverage
 from disorder_landscape.studies.fresh_wires import wrong
 from disorder_landscape.studies.unmodelled import KINDS, MODEL_ALONE

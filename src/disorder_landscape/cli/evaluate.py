@@ -14,9 +14,9 @@ def evaluate(config: ConfigFile, build: Build = Path("build")) -> None:
 
     Example: landscape evaluate --config configs/small.toml
     """
-    from disorder_landscape import chain
+    from disorder_landscape import chain, runs
 
-    run = chain.open_run(config, build)
+    run = runs.open_run(config, build)
     scores = chain.evaluate(run).attrs
     print(f"R2 (standard-scaled)  {scores['R2']:.4f}")
     print(f"dV_dis(x_i)           {scores['delta_V']:.4f} meV")

@@ -32,11 +32,11 @@ def generate(
 
     Example: landscape generate --config configs/small.toml --workers 2
     """
-    from disorder_landscape import chain
+    from disorder_landscape import chain, runs
     from disorder_landscape.dataset.shards import missing_shards
 
     check_options_of(executor, site, dry_run, scheduler)
-    run, taken = chain.open_run(config, build), parse_share(share)
+    run, taken = runs.open_run(config, build), parse_share(share)
     with resumable():
         if executor is Where.SLURM:
 

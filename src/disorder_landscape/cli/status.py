@@ -12,11 +12,11 @@ def status(config: ConfigFile, build: Build = Path("build")) -> None:
 
     Example: landscape status --config configs/small.toml
     """
-    from disorder_landscape import chain
+    from disorder_landscape import chain, runs
     from disorder_landscape.dataset import shards
     from disorder_landscape.executors.slurm import said_of_jobs
 
-    run = chain.open_run(config, build)
+    run = runs.open_run(config, build)
     now = shards.status(run.config.dataset, run.dataset_folder)
     print(
         f"dataset     {now.realizations} of {now.realizations_in_all} realizations in "

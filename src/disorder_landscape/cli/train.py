@@ -14,7 +14,7 @@ def train(config: ConfigFile, build: Build = Path("build")) -> None:
 
     Example: landscape train --config configs/small.toml
     """
-    from disorder_landscape import chain
+    from disorder_landscape import chain, runs
 
     with resumable():
-        chain.train(chain.open_run(config, build))
+        chain.train(runs.open_run(config, build))

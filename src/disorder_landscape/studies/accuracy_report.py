@@ -9,9 +9,9 @@ import numpy as np
 from matplotlib import style
 from matplotlib.figure import Figure
 
-from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.pictures import write_picture
+from disorder_landscape.runs import REPOSITORY
 from disorder_landscape.studies.accuracy_cases import KINDS
 
 CLOSE, WORST = 1e-4, 1e-3

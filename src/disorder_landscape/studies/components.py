@@ -14,9 +14,9 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from disorder_landscape.chain import THIRTY, shipped_model
 from disorder_landscape.config import DatasetConfig, Positive
 from disorder_landscape.model.parameters import ALPHA, BIAS
+from disorder_landscape.runs import THIRTY, shipped_model
 from disorder_landscape.studies.fresh_wires import Noise, inverted, measured_wire, model_of
 from disorder_landscape.studies.rows import rounded
 from disorder_landscape.studies.study import Part, Place, Plan

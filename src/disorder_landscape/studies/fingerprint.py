@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 
-from disorder_landscape.chain import REPOSITORY
+from disorder_landscape.runs import REPOSITORY
 
 PACKAGE = REPOSITORY / "src" / "disorder_landscape"
 

@@ -18,7 +18,6 @@ import numpy as np
 import pandas as pd
 from pydantic import AfterValidator, Field
 
-from disorder_landscape.chain import MODELS, shipped_model
 from disorder_landscape.config import DatasetConfig, Positive
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.inference.defaults import SAMPLES
@@ -32,6 +31,7 @@ from disorder_landscape.inference.result import evidence
 from disorder_landscape.inference.verdict import verdict
 from disorder_landscape.learning.model import TrainedModel, load_model
 from disorder_landscape.model.parameters import FloatArray, Nanowire
+from disorder_landscape.runs import MODELS, shipped_model
 from disorder_landscape.solver.quadrature import thermal_quadrature
 from disorder_landscape.studies.study import Part, Plan, one_of
 from disorder_landscape.studies.truth import of_realization, unknowns_of

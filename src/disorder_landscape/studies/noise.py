@@ -14,7 +14,7 @@ from typing import ClassVar, Literal
 import numpy as np
 import xarray as xr
 
-from disorder_landscape.chain import Run, read_test_set
+from disorder_landscape.chain import read_test_set
 from disorder_landscape.learning.metrics import score
 from disorder_landscape.learning.model import TrainedModel, load_model
 from disorder_landscape.learning.scaling import (
@@ -23,6 +23,7 @@ from disorder_landscape.learning.scaling import (
     conductance_array,
     label_array,
 )
+from disorder_landscape.runs import Run
 from disorder_landscape.studies.fresh_wires import Noise
 from disorder_landscape.studies.study import Place
 from disorder_landscape.studies.trainings import (

@@ -10,9 +10,9 @@ from typing import Any, ClassVar, Protocol, TypeVar
 
 from pydantic import BaseModel, ConfigDict
 
-from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.executors.executor import WHOLE, Executor, Share
 from disorder_landscape.executors.local import IN_THIS_PROCESS
+from disorder_landscape.runs import REPOSITORY
 from disorder_landscape.studies.rows import Row
 
 PLANS = REPOSITORY / "configs" / "studies"

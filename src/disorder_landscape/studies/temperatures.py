@@ -19,7 +19,6 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from pydantic import Field
 
-from disorder_landscape.chain import REPOSITORY
 from disorder_landscape.config import DatasetConfig, Positive
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.model.parameters import FloatArray
@@ -27,6 +26,7 @@ from disorder_landscape.model.quantities import CONDUCTANCES
 from disorder_landscape.observables.conductance import conductance
 from disorder_landscape.observables.visibility import topological_visibility
 from disorder_landscape.pictures import write_picture
+from disorder_landscape.runs import REPOSITORY
 from disorder_landscape.studies.rows import Row, numbers
 from disorder_landscape.studies.study import Derived, Place, Plan
 

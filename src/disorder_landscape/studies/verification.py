@@ -17,13 +17,14 @@ import numpy as np
 import xarray as xr
 from pydantic import Field
 
-from disorder_landscape.chain import FIVE, SHIPPED, preset_run, read_test_set
+from disorder_landscape.chain import read_test_set
 from disorder_landscape.config import DatasetConfig, Positive
 from disorder_landscape.inference.defaults import WIDEST_SHIFT
 from disorder_landscape.inference.verify import verify
 from disorder_landscape.learning.prediction import predict
 from disorder_landscape.model.parameters import Nanowire
 from disorder_landscape.observables.conductance import conductance
+from disorder_landscape.runs import FIVE, SHIPPED, preset_run
 from disorder_landscape.studies.rows import Row, numbers
 from disorder_landscape.studies.study import Derived, Place, Plan
 
