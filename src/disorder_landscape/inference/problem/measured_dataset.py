@@ -10,7 +10,7 @@ import xarray as xr
 
 from disorder_landscape.arguments import number_in, require
 from disorder_landscape.inference.problem.measured_numbers import (
-    GATE_RANGE,
+    IN_ANY_UNIT,
     axis_of,
     biases_of,
     conductances_of,
@@ -73,7 +73,7 @@ def measurement_of(dataset: xr.Dataset, usual: Mapping[str, Any] | None = None) 
     there, bias = np.isfinite(G).any(axis=(0, 1, 3)), biases_of(dataset)
     return Measurement(
         G=G[:, :, there],
-        mu=axis_of(dataset, "mu", GATE_RANGE if axes[0] == GATE else 1e3),
+        mu=axis_of(dataset, "mu", IN_ANY_UNIT if axes[0] == GATE else 1e3),
         B=axis_of(dataset, "B", 100.0),
         bias=bias[there],
         left_out=bias[~there],

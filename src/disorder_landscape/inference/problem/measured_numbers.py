@@ -30,8 +30,8 @@ LARGEST_BIAS = PARAMETER_RANGES["delta0"][1]
 """In meV: there is no larger gap, which biases stay below, …"""
 LEAST_BIAS = 1e-3
 """… and if none is larger than this, which is kT at 12 mK, they are no meV."""
-GATE_RANGE = 1e6
-"""Largest gate voltage in any unit."""
+IN_ANY_UNIT = 1e6
+"""Largest value of an axis whose unit is not known."""
 IN_QUANTA = f"be in e²/h, which is {QUANTUM:.4g} S, by which conductances in S are divided"
 
 
@@ -59,14 +59,14 @@ def conductances_of(dataset: xr.Dataset, given: Sequence[str]) -> FloatArray:
 
 
 def biases_of(dataset: xr.Dataset) -> FloatArray:
-    """Return the biases in meV, in increasing order; those in V or µV that do not say so are none.
+    """Return the biases in meV, in increasing order.
 
     Raises
     ------
     ArgumentError
-        If they are something else.
+        If they are something else: in another unit, stated or not, or no grid.
     """
-    bias = axis_of(dataset, "bias", 1e6)
+    bias = axis_of(dataset, "bias", IN_ANY_UNIT)
     largest = abs(bias).max()
     for unlikely, unit in (
         (largest > LARGEST_BIAS, "µV"),
