@@ -141,7 +141,7 @@ def _infer_alone(settings: Settings, task: Task) -> None:
     from disorder_landscape.dataset.store import read_dataset
     from disorder_landscape.files import check_writable
     from disorder_landscape.inference.file import infer_file
-    from disorder_landscape.inference.given import observation_of
+    from disorder_landscape.inference.given import network_given, observation_of
     from disorder_landscape.inference.noise_hints import noise_hint
     from disorder_landscape.inference.plot import PAGE
     from disorder_landscape.inference.problem.noise import stated_noise
@@ -158,7 +158,9 @@ def _infer_alone(settings: Settings, task: Task) -> None:
         check_picture("plot", plot, [PAGE])
     measured = read_dataset(task.measurement)
     errors = stated_noise(measured.attrs) if settings.noise is None else settings.noise
-    observation = observation_of(measured, settings.prior_and_network()[0], errors)
+    prior, network = settings.prior_and_network()
+    observation = observation_of(measured, prior, errors)
+    network_given(observation, prior, network)
     if settings.noise is None and "noise" not in measured.attrs:
         print(f"No noise is stated: {NOISE_FLOOR:g} e²/h is taken (--noise says another).")
     if settings.model is not None and not settings.from_prior:

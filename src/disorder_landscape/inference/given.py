@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+import numpy as np
 import xarray as xr
 
-from disorder_landscape.arguments import require, shown
+from disorder_landscape.arguments import ArgumentError, require, shown
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.inference.problem.measured_dataset import measurement_of
 from disorder_landscape.inference.problem.measured_numbers import check_carried
@@ -16,6 +17,7 @@ from disorder_landscape.inference.problem.noise import noise_of_channels, stated
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.problem.unknowns import Unknowns
+from disorder_landscape.inference.search.first_guess import on_grid_of_network
 from disorder_landscape.learning.model import TrainedModel, existing_folder, load_model_config
 
 TOML = ".toml"
@@ -69,3 +71,45 @@ def observation_of(
     errors = noise_of_channels(stated_noise(G.attrs) if noise is None else noise, G)
     check_carried(measurement, errors)
     return Observation(measurement, Unknowns(known.for_measurement(measurement)), errors)
+
+
+def network_given(
+    observation: Observation, prior: Prior | Model, network: bool | Model | None
+) -> tuple[Model | None, str]:
+    """Return the model whose network guesses, if any, and the words for where attempts start.
+
+    Raises
+    ------
+    ArgumentError
+        As in `infer`.
+    """
+    model: Model
+    if network is None or isinstance(network, bool | np.bool_):
+        must = "be a trained model, where there is a prior instead of one"
+        has_one = not isinstance(prior, Prior)
+        require(has_one or not network, "network", must, "it is True")
+        if isinstance(prior, Prior) or (network is not None and not network):
+            return None, "the prior"
+        model = prior
+    else:
+        model = network
+    config, sites = config_of(model), observation.unknowns.prior.sites
+    must = f"be of wires of {sites} sites, as the prior is"
+    require(config.sites == sites, "network", must, f"it is of {config.sites}")
+    lacks = bool(np.isin(config.bias, observation.measurement.left_out).any())
+    if lacks or not _on_grid_of_network(config, observation).is_measured.all():
+        why = "because the network needs all conductances of its grid and some are missing"
+        return None, f"the prior, {why}"
+    must = "be none where V of every site is unknown"
+    require(not observation.unknowns.is_whole_landscape, "network", must, "there is one")
+    return model, "the network's guess"
+
+
+def _on_grid_of_network(config: DatasetConfig, observation: Observation) -> Observation:
+    """Return what is on the network's grid, or say how to do without the network."""
+    try:
+        return on_grid_of_network(config, observation)
+    except ArgumentError as error:
+        name, must, but = error.parts
+        without = "(network=False, or --from-prior, does without the network)"
+        raise ArgumentError(name, must, f"{but} {without}") from None

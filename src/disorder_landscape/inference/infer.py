@@ -11,7 +11,6 @@ import xarray as xr
 from threadpoolctl import threadpool_limits
 
 from disorder_landscape.arguments import (
-    ArgumentError,
     check_progress,
     require,
     shown,
@@ -22,14 +21,19 @@ from disorder_landscape.config import DatasetConfig
 from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.defaults import SAMPLES
 from disorder_landscape.inference.discrepancy import BestEffort, best_effort, discrepancy_of
-from disorder_landscape.inference.given import Model, config_of, observation_of, prior_given
+from disorder_landscape.inference.given import (
+    Model,
+    config_of,
+    network_given,
+    observation_of,
+    prior_given,
+)
 from disorder_landscape.inference.invert import invert
 from disorder_landscape.inference.optimum import chi_square_excess
 from disorder_landscape.inference.problem.observation import Observation, overall_misfit
 from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.result import result_of
 from disorder_landscape.inference.search.few_unknowns import InversionSettings
-from disorder_landscape.inference.search.first_guess import on_grid_of_network
 from disorder_landscape.inference.search.steps import Steps
 from disorder_landscape.inference.stages import MAPS, Progress, Step, silent
 from disorder_landscape.inference.streams import Stream
@@ -133,7 +137,8 @@ def infer(
     require(samples % 2 == 0, "samples", "be an even number", f"it is {samples}")
     seed = whole_number_in("seed", seed, 0, 2**31)
     discrepancy = whether("discrepancy", discrepancy)
-    trained, start = _network(observation, prior, network)
+    model, start = network_given(observation, prior, network)
+    trained = model if model is None or isinstance(model, TrainedModel) else load_model(model)
     fingerprint = _fingerprint(observation, trained, repr((seed, settings, start)))
     steps = Steps(Checkpoint(checkpoint, fingerprint).cached, progress)
     with threadpool_limits(1, user_api="blas"):  # else the simulation's threads wait for others
@@ -163,33 +168,6 @@ def infer(
     return result
 
 
-def _network(
-    observation: Observation, prior: Prior | Model, network: bool | Model | None
-) -> tuple[TrainedModel | None, str]:
-    """Return the network that guesses, if any, and the words for where attempts start."""
-    model: Model
-    if network is None or isinstance(network, bool | np.bool_):
-        must = "be a trained model, where there is a prior instead of one"
-        has_one = not isinstance(prior, Prior)
-        require(has_one or not network, "network", must, "it is True")
-        if isinstance(prior, Prior) or (network is not None and not network):
-            return None, "the prior"
-        model = prior
-    else:
-        model = network
-    config, sites = config_of(model), observation.unknowns.prior.sites
-    must = f"be of wires of {sites} sites, as the prior is"
-    require(config.sites == sites, "network", must, f"it is of {config.sites}")
-    lacks = bool(np.isin(config.bias, observation.measurement.left_out).any())
-    if lacks or not _on_grid_of_network(config, observation).is_measured.all():
-        why = "because the network needs all conductances of its grid and some are missing"
-        return None, f"the prior, {why}"
-    must = "be none where V of every site is unknown"
-    require(not observation.unknowns.is_whole_landscape, "network", must, "there is one")
-    trained = model if isinstance(model, TrainedModel) else load_model(model)
-    return trained, "the network's guess"
-
-
 def _fingerprint(observation: Observation, trained: TrainedModel | None, options: str) -> bytes:
     """Return all that an inversion depends on."""
     m = observation.measurement
@@ -198,13 +176,3 @@ def _fingerprint(observation: Observation, trained: TrainedModel | None, options
     arrays = m.G, m.mu, m.B, m.bias, np.array(m.theta)
     measured = b"".join(np.ascontiguousarray(x).tobytes() for x in arrays)
     return said.encode() + measured + (b"" if trained is None else trained.fingerprint())
-
-
-def _on_grid_of_network(config: DatasetConfig, observation: Observation) -> Observation:
-    """Return what is on the network's grid, or say how to do without the network."""
-    try:
-        return on_grid_of_network(config, observation)
-    except ArgumentError as error:
-        name, must, but = error.parts
-        without = "(network=False, or --from-prior, does without the network)"
-        raise ArgumentError(name, must, f"{but} {without}") from None
