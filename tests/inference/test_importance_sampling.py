@@ -11,17 +11,19 @@ from disorder_landscape.inference.optimum import Optimum, optimum_at
 from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.posterior import proposal, samples
 from disorder_landscape.inference.posterior.importance_sampling import (
-    ENOUGH,
     FIRST_BATCH,
     LARGEST_BATCH,
-    ImportanceSamples,
     Part,
     fitted,
     importance_sampling,
-    tempered,
     widened,
 )
 from disorder_landscape.inference.posterior.samples import normality, posterior_samples
+from disorder_landscape.inference.posterior.weighted_samples import (
+    ENOUGH,
+    ImportanceSamples,
+    tempered,
+)
 from disorder_landscape.inference.problem import unknowns
 from disorder_landscape.inference.problem.gaussian import Gaussian, log_density, log_mixture
 from disorder_landscape.inference.problem.observation import objective

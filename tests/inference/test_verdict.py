@@ -7,8 +7,8 @@ import pytest
 
 from disorder_landscape.inference.optimum import Optimum, chi_square_excess, same_answer
 from disorder_landscape.inference.outcome import Outcome
-from disorder_landscape.inference.posterior.importance_sampling import ImportanceSamples
 from disorder_landscape.inference.posterior.samples import posterior_shares
+from disorder_landscape.inference.posterior.weighted_samples import ImportanceSamples
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.verdict import (

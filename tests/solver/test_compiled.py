@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 from disorder_landscape import ArgumentError, Nanowire
 from disorder_landscape.model.parameters import BIAS, BOLTZMANN, TEMPERATURE
-from disorder_landscape.solver import compiled
+from disorder_landscape.solver import compiled, variants
 
 
 def on_a_grid(core):
@@ -31,9 +31,9 @@ def on_a_grid(core):
     ]
 
 
-@pytest.mark.parametrize("name", compiled.supported())
+@pytest.mark.parametrize("name", variants.supported())
 def test_every_variant_that_the_cpu_has_computes_the_same(name):
-    core = compiled.variant(name)
+    core = variants.variant(name)
     assert core.instruction_set() == name
     *bare, G, error, _ = on_a_grid(core)
     *expected, expected_G, expected_error, _ = on_a_grid(compiled.core)
@@ -42,39 +42,39 @@ def test_every_variant_that_the_cpu_has_computes_the_same(name):
     assert (abs(G - expected_G).max(axis=(-1, -2)) <= error + expected_error).all()
 
 
-@pytest.mark.skipif("avx512" not in compiled.supported(), reason="needs a CPU with AVX-512")
+@pytest.mark.skipif("avx512" not in variants.supported(), reason="needs a CPU with AVX-512")
 def test_variants_with_multiply_adds_give_the_same_bits():
-    both = (on_a_grid(compiled.variant(name)) for name in ("avx2", "avx512"))
+    both = (on_a_grid(variants.variant(name)) for name in ("avx2", "avx512"))
     for one, other in zip(*both, strict=True):
         np.testing.assert_array_equal(one, other)
 
 
-@pytest.mark.parametrize("name", compiled.supported())
+@pytest.mark.parametrize("name", variants.supported())
 def test_the_stub_names_what_every_variant_has(name):
     stub = Path(compiled.__file__).with_name("_core_baseline.pyi")
     body = ast.parse(stub.read_text()).body
     stated = {node.name for node in body if isinstance(node, ast.FunctionDef)}
     stated |= {ast.unparse(node.target) for node in body if isinstance(node, ast.AnnAssign)}
-    assert stated == {given for given in vars(compiled.variant(name)) if given[0] != "_"}
+    assert stated == {given for given in vars(variants.variant(name)) if given[0] != "_"}
 
 
 def test_the_fastest_is_chosen(monkeypatch):
-    monkeypatch.delenv(compiled.CHOICE, raising=False)
-    assert compiled.chosen() == compiled.supported()[-1]
+    monkeypatch.delenv(variants.CHOICE, raising=False)
+    assert variants.chosen() == variants.supported()[-1]
 
 
 def imported_with(choice):
     code = "from disorder_landscape.solver.compiled import core; print(core.instruction_set())"
     return subprocess.run(
         [sys.executable, "-c", code],
-        env=os.environ | {compiled.CHOICE: choice},
+        env=os.environ | {variants.CHOICE: choice},
         capture_output=True,
         text=True,
         check=False,
     )
 
 
-@pytest.mark.parametrize("name", compiled.supported())
+@pytest.mark.parametrize("name", variants.supported())
 def test_the_environment_chooses(name):
     assert imported_with(name).stdout == f"{name}\n"
 
@@ -90,9 +90,9 @@ def test_an_unknown_variant_is_refused_in_one_sentence():
 
 def test_a_variant_that_the_cpu_lacks_is_refused_in_one_sentence(monkeypatch):
     monkeypatch.setattr(compiled, "supported", lambda: ["baseline", "avx2"])
-    monkeypatch.setenv(compiled.CHOICE, "avx512")
+    monkeypatch.setenv(variants.CHOICE, "avx512")
     with pytest.raises(ArgumentError) as refused:
-        compiled.chosen()
+        variants.chosen()
     assert str(refused.value) == (
         "Argument DISORDER_LANDSCAPE_CORE must be what this CPU can run (baseline, avx2), "
         "but it is avx512."
@@ -101,7 +101,7 @@ def test_a_variant_that_the_cpu_lacks_is_refused_in_one_sentence(monkeypatch):
 
 def test_a_core_that_was_not_built_is_said_in_one_sentence():
     with pytest.raises(ImportError, match=r"not built for this Python .* run `make setup`"):
-        compiled.variant("neon")
+        variants.variant("neon")
 
 
 def test_a_level_of_a_closed_wire_reflects_nothing_that_comes_in():

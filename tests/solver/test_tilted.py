@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import arithmetics
 from disorder_landscape.model import hamiltonian
-from disorder_landscape.solver import compiled, kwant_reference
+from disorder_landscape.solver import compiled, kwant_reference, variants
 from random_wires import energies, fields, mus, random_wire, seeds
 
 angles = st.one_of(st.floats(-3.2, 3.2), st.sampled_from([0.0, np.pi / 2, np.pi, 1e-7]))
@@ -79,8 +79,8 @@ def test_every_variant_gives_the_same(monkeypatch):
     mu, B, theta = np.linspace(0.0, 0.6, 5), np.array([0.0, 1e-9, 0.3, 0.8]), 0.7
     omega, z = np.array([0.0, 0.04, 0.2]), np.array([0.01 + 0.002j, 0.08 + 0.001j])
     results = {}
-    for name in compiled.supported():
-        monkeypatch.setattr(compiled, "core", compiled.variant(name))
+    for name in variants.supported():
+        monkeypatch.setattr(compiled, "core", variants.variant(name))
         results[name] = (
             arithmetics.tilted_conductance(wires, mu, B, omega, theta),
             compiled.reflection_determinant(wires, mu, B, theta),
@@ -88,7 +88,7 @@ def test_every_variant_gives_the_same(monkeypatch):
             np.array([compiled.lead_self_energies(wires[0], field, omega, theta) for field in B]),
         )
     for name, found in results.items():
-        for ours, best in zip(found, results[compiled.supported()[-1]], strict=True):
+        for ours, best in zip(found, results[variants.supported()[-1]], strict=True):
             assert_allclose(ours, best, rtol=0, atol=1e-12)
             if name != "baseline":
                 assert_array_equal(ours, best)

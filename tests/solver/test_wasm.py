@@ -16,7 +16,7 @@ import arithmetics
 from disorder_landscape import Nanowire
 from disorder_landscape.model.parameters import BIAS, BOLTZMANN, TEMPERATURE
 from disorder_landscape.runs import REPOSITORY
-from disorder_landscape.solver import compiled
+from disorder_landscape.solver import compiled, variants
 from random_wires import random_wire
 
 pytestmark = [
@@ -71,7 +71,7 @@ def test_the_module_is_small(wasm):
 
 def test_1000_conductances_at_zero_temperature_are_those_of_python(wasm):
     """With the variant that rounds as WebAssembly does, which has no multiply-add either."""
-    core, rng = compiled.variant("baseline"), np.random.default_rng(0)
+    core, rng = variants.variant("baseline"), np.random.default_rng(0)
     requests, expected = [], []
     for wire in RANDOM:
         mu, B, omega = random_points(rng, 5)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from disorder_landscape.inference.optimum import Optimum, best
-from disorder_landscape.inference.posterior.importance_sampling import ImportanceSamples
+from disorder_landscape.inference.posterior.weighted_samples import ImportanceSamples
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.model.parameters import FloatArray
 

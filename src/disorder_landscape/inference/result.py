@@ -16,7 +16,7 @@ from disorder_landscape.inference.maps import (
 )
 from disorder_landscape.inference.maxima import maxima_of
 from disorder_landscape.inference.outcome import Outcome
-from disorder_landscape.inference.posterior.importance_sampling import weighted_samples
+from disorder_landscape.inference.posterior.weighted_samples import weighted_samples
 from disorder_landscape.inference.problem.distributions import Distribution, Uniform
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.problem.parameters import BY_NAME

@@ -1,27 +1,22 @@
-"""The compiled core in the best variant that this CPU can run.
+"""What the compiled core calculates, of wires and arrays.
 
-`core` is that variant, one of the modules that CMakeLists.txt builds from core/binding.cpp.  The
-environment variable DISORDER_LANDSCAPE_CORE names another one.
+`core` is its best variant that this CPU can run, or the one that is asked for (`variants`).
 """
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from importlib import import_module
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from disorder_landscape.arguments import require
 from disorder_landscape.model.hamiltonian import ComplexArray
 from disorder_landscape.model.parameters import BOLTZMANN, FloatArray, Nanowire
+from disorder_landscape.solver.variants import chosen, variant
 
 if TYPE_CHECKING:
-    from types import ModuleType
-
     from disorder_landscape.solver import _core_baseline as core
 
 __all__ = [
@@ -38,56 +33,6 @@ __all__ = [
     "thermal_gradient",
     "threads_at_work",
 ]
-
-CHOICE = "DISORDER_LANDSCAPE_CORE"
-VARIANTS = ("baseline", "avx2", "avx512")
-
-
-def variant(name: str) -> ModuleType:
-    """Return the module of one variant; the CPU must be able to run it.
-
-    Raises
-    ------
-    ImportError
-        If it was not built.
-    """
-    module = f"{__package__}._core_{name}"
-    try:
-        return import_module(module)
-    except ModuleNotFoundError as error:
-        if error.name != module:
-            raise
-        raise ImportError(
-            f"The compiled core ({module}) was not built for this Python and platform: "
-            "run `make setup` where the sources are, or install the package here from them.",
-            name=module,
-        ) from None
-
-
-def supported() -> list[str]:
-    """Return the variants that this CPU can run, from the slowest to the fastest."""
-    names: list[str] = variant("baseline").supported_variants()
-    return names
-
-
-def chosen() -> str:
-    """Return which variant to use: the fastest, or what the environment says.
-
-    Raises
-    ------
-    ArgumentError
-        If the environment names none, or one that this CPU cannot run.
-    """
-    names = supported()
-    choice = os.environ.get(CHOICE)
-    if not choice:
-        return names[-1]
-    require(choice in VARIANTS, CHOICE, f"be one of {', '.join(VARIANTS)}", f"it is {choice!r}")
-    require(
-        choice in names, CHOICE, f"be what this CPU can run ({', '.join(names)})", f"it is {choice}"
-    )
-    return choice
-
 
 if not TYPE_CHECKING:
     core = variant(chosen())

@@ -15,16 +15,16 @@ tempered: raised to a power below one (Koblents and Míguez, Stat. Comput. 25, 4
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
 from scipy.special import softmax
 
 from disorder_landscape.inference.checkpoint import Cache, uncached
 from disorder_landscape.inference.posterior import proposal
+from disorder_landscape.inference.posterior.weighted_samples import ImportanceSamples, tempered
 from disorder_landscape.inference.problem.gaussian import Gaussian, log_density, log_mixture
 from disorder_landscape.inference.problem.observation import Observation, objective, overall_misfit
 from disorder_landscape.inference.problem.straightened import Straightened
@@ -37,12 +37,8 @@ LARGEST_BATCH, LARGEST_BATCH_PER_UNKNOWN = 128, 12
 """Each further batch has at most so many samples, or so many for each unknown if these are more."""
 SMALLEST_BATCH = 32
 """It has as many as are still needed, but no fewer than this."""
-ENOUGH = 100.0
-"""The effective sample size at which it ends, at least, …"""
-ENOUGH_PER_UNKNOWN = 12.0
-"""… and for each unknown, …"""
 ITERATIONS = 16
-"""… unless so many iterations have not been enough."""
+"""At most, even if samples are still needed then."""
 LEAST_SHARE = 0.25
 """The weights from which the next proposal is made are tempered until the effective sample size is
 this share of the samples, or of a largest batch if there are more."""
@@ -62,66 +58,6 @@ LEAST_SAMPLES = 0.25
 """… It stays as it is if it is responsible for less than this much of one of the samples."""
 WHITE_NOISE = Straightened({})
 """Proposals are t distributions of the unknowns themselves."""
-
-
-@dataclass(frozen=True, eq=False)
-class ImportanceSamples:
-    """Samples (sample, unknown), and weights (sample,) whose sum is one."""
-
-    samples: FloatArray
-    weight: FloatArray
-    power: float = 1.0
-    """To which the weights are raised. If it is less than one, the samples are those of a wider
-    distribution than the posterior."""
-    log_mean_weight: float = np.nan
-    """The logarithm of the mean of the weights before they are normalised: of the evidence, where
-    these are densities."""
-    height: FloatArray | None = None
-    """−2 log of the posterior density at each, up to the constant of `objective`."""
-
-    @property
-    def effective_sample_size(self) -> float:
-        """As many independent samples have the same variance (Kish): 1 / Σ weight²."""
-        return float(1 / (self.weight**2).sum())
-
-    @property
-    def is_enough(self) -> bool:
-        """Whether these are samples of the posterior, and as many as are needed."""
-        return self.power == 1 and self.effective_sample_size >= self._needed
-
-    @property
-    def _needed(self) -> float:
-        return float(max(ENOUGH, ENOUGH_PER_UNKNOWN * self.samples.shape[1]))
-
-    @property
-    def still_needed(self) -> int:
-        """How many more samples will be enough, if they are as effective as these."""
-        return int(np.ceil(len(self.samples) * (self._needed / self.effective_sample_size - 1)))
-
-    @property
-    def moments(self) -> Gaussian:
-        """The normal distribution of the same mean and covariance."""
-        own = self.uncorrected_moments
-        return Gaussian(own.mean, own.covariance / (1 - 1 / self.effective_sample_size))
-
-    @property
-    def uncorrected_moments(self) -> Gaussian:
-        """The same without the correction for the finite number of samples."""
-        mean = self.weight @ self.samples
-        off = self.samples - mean
-        covariance = (off.T * self.weight) @ off
-        return Gaussian(mean, (covariance + covariance.T) / 2)
-
-    def moments_of(self, values: FloatArray) -> tuple[float, float]:
-        """Return mean and standard deviation of something of each sample, values (sample,)."""
-        of = replace(self, samples=values[:, None]).moments
-        return float(of.mean[0]), float(np.sqrt(of.covariance[0, 0]))
-
-    def draw(self, rng: np.random.Generator, count: int) -> FloatArray:
-        """Return samples (count, unknown) of equal weight, by systematic resampling."""
-        share = np.cumsum(self.weight)
-        at = np.searchsorted(share / share[-1], (rng.random() + np.arange(count)) / count)
-        return self.samples[at]
 
 
 class Part(NamedTuple):
@@ -255,33 +191,3 @@ def _simulated(observation: Observation, X: FloatArray) -> dict[str, Any]:
         "height": height.tolist(),
         "misfit": overall_misfit(observation, Y[int(height.argmin())]),
     }
-
-
-def weighted_samples(
-    observation: Observation, answer: Gaussian, X: FloatArray
-) -> ImportanceSamples:
-    """Return samples X (sample, unknown) of an answer, weighted with the exact posterior."""
-    height = objective(observation, X, observation.simulate(X))
-    return tempered(X, -0.5 * height - log_density(answer, X), 0.0)
-
-
-def tempered(X: FloatArray, log_weight: FloatArray, least: float) -> ImportanceSamples:
-    """Return samples with weights to the largest power that leaves this effective sample size.
-
-    The power is one if the weights themselves have it. Weights of zero, of which the logarithm is
-    −∞, stay zero.
-    """
-    log_mean = float(np.logaddexp.reduce(log_weight) - np.log(log_weight.size))
-    counts = np.isfinite(log_weight)
-
-    def to_the(power: float) -> ImportanceSamples:
-        weight = np.zeros(log_weight.size)
-        weight[counts] = np.exp(power * (log_weight[counts] - log_weight.max()))
-        return ImportanceSamples(X, weight / weight.sum(), power, log_mean)
-
-    whole = to_the(1.0)
-    if whole.effective_sample_size >= least:
-        return whole
-    return to_the(
-        float(brentq(lambda power: to_the(power).effective_sample_size - least, 0.0, 1.0))
-    )

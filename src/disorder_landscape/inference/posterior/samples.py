@@ -10,12 +10,12 @@ from disorder_landscape.inference.checkpoint import Cache, uncached
 from disorder_landscape.inference.optimum import NEGLIGIBLE, Optimum, best, shares
 from disorder_landscape.inference.posterior import proposal
 from disorder_landscape.inference.posterior.importance_sampling import (
-    ImportanceSamples,
     Part,
     importance_sampling,
     in_straight_variables,
     responsibilities,
 )
+from disorder_landscape.inference.posterior.weighted_samples import ImportanceSamples
 from disorder_landscape.inference.problem.gaussian import Gaussian, log_density
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.problem.straightened import Straightened
