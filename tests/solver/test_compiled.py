@@ -89,7 +89,7 @@ def test_an_unknown_variant_is_refused_in_one_sentence():
 
 
 def test_a_variant_that_the_cpu_lacks_is_refused_in_one_sentence(monkeypatch):
-    monkeypatch.setattr(compiled, "supported", lambda: ["baseline", "avx2"])
+    monkeypatch.setattr(variants, "supported", lambda: ["baseline", "avx2"])
     monkeypatch.setenv(variants.CHOICE, "avx512")
     with pytest.raises(ArgumentError) as refused:
         variants.chosen()
