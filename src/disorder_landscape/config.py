@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-import tomllib
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Literal, TypeVar
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import (
@@ -14,12 +12,9 @@ from pydantic import (
     BaseModel,
     ConfigDict,
     Field,
-    RootModel,
-    ValidationError,
     model_validator,
 )
 
-from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.model import disorder
 from disorder_landscape.model.parameters import (
     ALPHA_RANGE,
@@ -34,15 +29,13 @@ from disorder_landscape.model.parameters import (
     Nanowire,
 )
 from disorder_landscape.model.ranges import PARAMETER_RANGES, checked_temperature
+from disorder_landscape.toml_file import checked
 
 Positive = Annotated[int, Field(ge=1, le=10_000_000)]
 """Of wires, points, epochs and the like: so many can be counted through."""
 Seed = Annotated[int, Field(ge=0, lt=2**63)]
 """As netCDF files can hold it."""
 LearningRate = Annotated[float, Field(gt=0, le=1)]
-
-
-Model = TypeVar("Model", bound=BaseModel)
 
 
 class _Section(BaseModel):
@@ -233,56 +226,3 @@ def load_config(path: str | Path) -> Config:
         If the file cannot be read, is not TOML, or has an unknown, missing or invalid key.
     """
     return checked(Config, path, "config")
-
-
-def checked(
-    model: type[Model], path: str | Path, name: str, content: Mapping[str, object] | None = None
-) -> Model:
-    """Read a TOML file, or take its content as given, and check it against a model.
-
-    Raises
-    ------
-    ArgumentError
-        Of the given argument name, if the file cannot be read, is not TOML, or has an unknown,
-        missing or invalid key.
-    """
-    try:
-        return model.model_validate(read_toml(path, name) if content is None else content)
-    except ValidationError as error:
-        first = min(error.errors(), key=lambda one: one["type"] != "extra_forbidden")  # a typo
-        # The tag of a union is no key.
-        place = first["loc"][1:] if issubclass(model, RootModel) else first["loc"]
-        key = ".".join(str(part) for part in place) or "the file"
-        messages = {
-            "extra_forbidden": "it has the unknown key {key}",
-            "missing": "it lacks the key {key}",
-        }
-        message = messages.get(first["type"], "{key} is wrong: {message}")
-        but = message.format(
-            key=key, message=first["msg"].removeprefix("Value error, ").rstrip(".")
-        )
-        raise ArgumentError(name, f"be right ('{path}')", but) from None
-
-
-def read_toml(path: str | Path, name: str) -> dict[str, object]:
-    """Return what a TOML file holds.
-
-    Parameters
-    ----------
-    path : str or Path
-    name : str
-        Of the argument, for the error.
-
-    Raises
-    ------
-    ArgumentError
-        If it cannot be read, or is none.
-    """
-    try:
-        with open(path, "rb") as file:
-            return tomllib.load(file)
-    except OSError as error:
-        but = f"'{path}' cannot be read ({error.strerror})"
-        raise ArgumentError(name, "be a readable TOML file", but) from None
-    except (ValueError, RecursionError) as error:  # also of too many digits, or of nesting
-        raise ArgumentError(name, "be a TOML file", f"'{path}' is not: {error}") from None

@@ -8,7 +8,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
-from disorder_landscape.config import checked
+from disorder_landscape.toml_file import checked
 
 Count = Annotated[int, Field(ge=1, le=1_000_000)]
 

@@ -12,7 +12,6 @@ from typing import Annotated, Any
 from pydantic import Field, RootModel
 
 from disorder_landscape.arguments import ArgumentError, require
-from disorder_landscape.config import checked
 from disorder_landscape.studies.accuracy import AccuracyPlan
 from disorder_landscape.studies.calibration import CalibrationPlan
 from disorder_landscape.studies.components import ComponentsPlan
@@ -31,6 +30,7 @@ from disorder_landscape.studies.trainings import TrainingsPlan
 from disorder_landscape.studies.uniqueness import UniquenessPlan
 from disorder_landscape.studies.unmodelled import UnmodelledPlan
 from disorder_landscape.studies.verification import VerificationPlan
+from disorder_landscape.toml_file import checked
 
 AnyPlan = (
     AccuracyPlan

@@ -15,11 +15,12 @@ from typing import Any, ClassVar, Literal
 from pydantic import BaseModel, Field, field_validator, model_validator
 
 from disorder_landscape.chain import generate
-from disorder_landscape.config import Config, checked
+from disorder_landscape.config import Config
 from disorder_landscape.learning.model_files import METRICS, is_trained
 from disorder_landscape.runs import Run, dataset_folder
 from disorder_landscape.studies.study import PLANS, Part, Place, Plan, one_of, study_names
 from disorder_landscape.studies.trainings_table import Result
+from disorder_landscape.toml_file import checked
 
 Sections = dict[str, dict[str, Any]]
 """Sections and keys of a configuration."""

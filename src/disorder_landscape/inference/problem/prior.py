@@ -14,7 +14,7 @@ from disorder_landscape.arguments import (
     shown,
     whole_number_in,
 )
-from disorder_landscape.config import DatasetConfig, read_toml
+from disorder_landscape.config import DatasetConfig
 from disorder_landscape.inference.problem.agreement import check_agreement, check_biases
 from disorder_landscape.inference.problem.distributions import (
     Belief,
@@ -38,6 +38,7 @@ from disorder_landscape.model.parameters import (
     check_leads,
 )
 from disorder_landscape.model.ranges import PARAMETER_RANGES
+from disorder_landscape.toml_file import read_toml
 
 Given = float | tuple[float, float] | Distribution | None
 ALL = "all"
