@@ -119,7 +119,7 @@ def infer(
     fits = len(measurements) == 1 or output.suffix != ".nc"
     require(fits, "output", "name a folder, for several measurements", f"it is '{output}'")
     if is_file:
-        alone = executor is Where.LOCAL and share == "1/1"
+        alone = executor is Where.LOCAL and parse_share(share).is_whole
         must = "be a folder, where jobs, other machines or a share of the tasks are asked for"
         require(alone, "output", must, f"it is '{output}'")
         _infer_alone(settings, Task(measurements[0], output, plot))
