@@ -96,7 +96,7 @@ def evaluate(run: Run) -> xr.Dataset:
     from disorder_landscape.learning.scaling import label_array
 
     if not run.shipped and run.is_trained:
-        but = f"'{run.model_folder}' holds one that was trained with another (remove it to train anew)"
+        but = f"'{run.model_folder}' holds one of another (remove it to train anew)"
         require(_holds_this_training(run), "config", "be that of the network", but)
     test = read_test_set(run)
     model = load_model(run.model_folder)

@@ -87,9 +87,9 @@ def potential_from_components(
 
 
 def positions(sites: int, lattice: float) -> FloatArray:
-    """Return x of the sites, (site,) in µm, in which the components are cosines of whole periods.
+    """Return x of the sites, (site,) in µm, of a lattice spacing in nm.
 
-    The lattice spacing is in nm; sites are in the middle of theirs.
+    Each is in the middle of its spacing, as in the components' φ_n(i).
     """
     return (np.arange(sites) + 0.5) * lattice / 1000
 
