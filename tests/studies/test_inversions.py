@@ -47,20 +47,19 @@ from disorder_landscape.studies.fresh_wires import (
     network_of,
     wrong,
 )
+from disorder_landscape.studies.other_wires import (
+    KINDS,
+    NOTHING,
+    changed,
+    true_conductances,
+    true_noise,
+)
 from disorder_landscape.studies.plan import load_study
 from disorder_landscape.studies.rows import as_text, read_rows, write_rows
 from disorder_landscape.studies.study import Place
 from disorder_landscape.studies.truth import of_device
 from disorder_landscape.studies.uniqueness import Setting, information_rows
-from disorder_landscape.studies.unmodelled import (
-    KINDS,
-    MODEL_ALONE,
-    NOTHING,
-    changed,
-    true_conductances,
-    true_noise,
-    unmodelled_row,
-)
+from disorder_landscape.studies.unmodelled import MODEL_ALONE, unmodelled_row
 
 PLAN = """
 kind = "inversions"
@@ -263,13 +262,12 @@ def test_something_is_measured_that_the_model_does_not_have(kind):
     """… from the middle field on if µ jumps; or the errors are others."""
     config = network_of(FIVE, 0.01).config.dataset.model_copy(update={"mu_points": 4})
     wire, settings = realization(config, 0).wire, empty_measurement(config)
-    task = unmodelled.Task(FIVE, MODEL_ALONE, 0.01, kind, 0)
-    change = abs(true_conductances(task, wire, settings) - simulated(wire, settings))
+    change = abs(true_conductances(kind, 0, wire, settings) - simulated(wire, settings))
     same = {NOTHING: settings.B.size, "jump": settings.B.size // 2, "errors": settings.B.size}
     before, after = np.split(change, [same.get(kind, 0)], axis=1)
     assert not before.any()
     assert not after.size or after.max() > 0.01
-    assert (true_noise(task) == task.noise) == (kind != "errors")
+    assert (true_noise(kind, 0, 0.01) == 0.01) == (kind != "errors")
 
 
 @pytest.mark.parametrize(

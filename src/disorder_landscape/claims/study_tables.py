@@ -13,7 +13,8 @@ from disorder_landscape.inference.verification.comparison import UNLIKELY
 from disorder_landscape.runs import REPOSITORY
 from disorder_landscape.studies.calibration import coverage, joint_coverage
 from disorder_landscape.studies.fresh_wires import wrong
-from disorder_landscape.studies.unmodelled import KINDS, MODEL_ALONE
+from disorder_landscape.studies.other_wires import KINDS
+from disorder_landscape.studies.unmodelled import MODEL_ALONE
 
 INVERSIONS = REPOSITORY / "results" / "inversions.csv"
 COMPONENTS = REPOSITORY / "results" / "components.csv"

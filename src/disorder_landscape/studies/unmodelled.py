@@ -24,7 +24,6 @@ from disorder_landscape.inference.problem.measurement import (
 )
 from disorder_landscape.inference.problem.noise import noise_of_channels
 from disorder_landscape.inference.problem.observation import Observation
-from disorder_landscape.inference.problem.series_resistance import in_series
 from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.verification.predictive import predictive_p
 from disorder_landscape.model.parameters import FloatArray, Nanowire
@@ -37,46 +36,16 @@ from disorder_landscape.studies.fresh_wires import (
     network_of,
 )
 from disorder_landscape.studies.named_priors import PriorName, named_prior
+from disorder_landscape.studies.other_wires import (
+    Kind,
+    changed,
+    true_conductances,
+    true_noise,
+)
 from disorder_landscape.studies.rows import rounded
 from disorder_landscape.studies.study import Part, Place, Plan
 from disorder_landscape.studies.truth import unknowns_of
 
-Kind = Literal[
-    "nothing",
-    "gap",
-    "temperature",
-    "barrier",
-    "uncorrelated",
-    "dissipation",
-    "bias",
-    "mass",
-    "length",
-    "leads",
-    "resistance",
-    "jump",
-    "errors",
-]
-NOTHING: Kind = "nothing"
-KINDS: dict[Kind, str] = {
-    NOTHING: "the model is right",
-    "gap": "Δ₀ 20 % smaller, or larger",
-    "temperature": "100 mK instead of 50 mK",
-    "barrier": "the left barrier twice as high, or the right one",
-    "uncorrelated": "V of each site independent, as strong",
-    "dissipation": "Γ = 1 µeV on each site",
-    "bias": "biases 5 µV higher than stated",
-    "mass": "m* 10 % smaller, or larger",
-    "length": "the wire 5 % shorter, or longer",
-    "leads": "µ of the leads 20 % smaller, or larger",
-    "resistance": "1 kΩ in series with each lead",
-    "jump": "µ 20 µeV higher from the middle field on",
-    "errors": "errors half as large as stated, or twice",
-}
-"""What is other than the model has it; of two, the index takes turns."""
-HOT, DISSIPATION, OFFSET = 0.1, 1e-3, 5e-3
-"""In K, meV and meV."""
-RESISTANCE, JUMP = 1e3, 0.02
-"""In Ω and meV."""
 MODEL_ALONE = "model"
 """Of a task: all but the disorder and α is taken as known."""
 STATED = Nanowire.barrier[0]
@@ -105,7 +74,7 @@ class Wires(Part):
     noise: tuple[Noise, ...]
     """In e²/h."""
     other: tuple[Kind, ...]
-    """Of KINDS."""
+    """Of `other_wires.KINDS`."""
     count: Positive
 
 
@@ -137,57 +106,6 @@ class UnmodelledPlan(Plan):
         return [unmodelled_row(task, self.samples, self.every)]
 
 
-def changed(
-    kind: str, index: int, wire: Nanowire, settings: Measurement
-) -> tuple[Nanowire, Measurement]:
-    """Return the wire as it is, and the settings at which it is measured in truth."""
-    first = index % 2 == 0
-    match kind:
-        case "gap":
-            return replace(wire, delta0=wire.delta0 * (0.8 if first else 1.2)), settings
-        case "temperature":
-            return wire, replace(settings, temperature=HOT)
-        case "barrier":
-            left, right = wire.barrier
-            barrier = (2 * left, right) if first else (left, 2 * right)
-            return replace(wire, barrier=barrier), settings
-        case "uncorrelated":
-            rng = np.random.default_rng([SEED, index, 2])
-            V = rng.normal(wire.potential.mean(), wire.potential.std(), wire.sites)
-            return replace(wire, potential=V), settings
-        case "dissipation":
-            return replace(wire, dissipation=DISSIPATION, parent_dissipation=0.0), settings
-        case "bias":
-            return wire, replace(settings, bias=settings.bias + OFFSET)
-        case "mass":
-            return replace(wire, mass=wire.mass * (0.9 if first else 1.1)), settings
-        case "length":
-            return replace(wire, lattice=wire.lattice * (0.95 if first else 1.05)), settings
-        case "leads":
-            return replace(wire, lead_mu=wire.lead_mu * (0.8 if first else 1.2)), settings
-        case _:
-            return wire, settings
-
-
-def true_conductances(task: Task, wire: Nanowire, settings: Measurement) -> FloatArray:
-    """Return what there is to measure, shape (mu, B, bias, channel), in e²/h."""
-    G = simulated(*changed(task.kind, task.index, wire, settings))
-    if task.kind == "resistance":
-        return in_series((RESISTANCE, RESISTANCE), G)
-    if task.kind == "jump":
-        later = slice(settings.B.size // 2, None)
-        shifted = replace(settings, mu=settings.mu + JUMP, B=settings.B[later])
-        G[:, later] = simulated(wire, shifted)
-    return G
-
-
-def true_noise(task: Task) -> float:
-    """Return the standard deviation of the errors in e²/h, which may be other than stated."""
-    if task.kind == "errors":
-        return task.noise * (0.5 if task.index % 2 == 0 else 2.0)
-    return task.noise
-
-
 def unmodelled_row(task: Task, samples: int, every: int) -> dict[str, object]:
     """Invert the measurement, check the answer, and compare it with the truth.
 
@@ -210,8 +128,8 @@ def unmodelled_row(task: Task, samples: int, every: int) -> dict[str, object]:
     alone = task.prior == MODEL_ALONE
     if not alone:
         unknowns = Unknowns(named_prior(task.prior).for_measurement(settings))
-    G = true_conductances(task, one.wire, settings)
-    errors = true_noise(task)
+    G = true_conductances(task.kind, task.index, one.wire, settings)
+    errors = true_noise(task.kind, task.index, task.noise)
     observation = Observation(measured(settings, G, errors, task.index), unknowns, noise)
     found = inverted(observation, network if alone else None, task.index)
     mean = found.answer.mean
@@ -220,7 +138,8 @@ def unmodelled_row(task: Task, samples: int, every: int) -> dict[str, object]:
     elsewhere = replace(
         settings, mu=config.mu[::every], B=config.B[::every], barrier=OTHER_BARRIERS
     )
-    other_G = true_conductances(task, replace(one.wire, barrier=OTHER_BARRIERS), elsewhere)
+    other = replace(one.wire, barrier=OTHER_BARRIERS)
+    other_G = true_conductances(task.kind, task.index, other, elsewhere)
     further = Observation(measured(elsewhere, other_G, errors, task.index, 3), unknowns, noise)
     rng = np.random.default_rng([SEED, task.index, 4])
     predicted = predicted_at(elsewhere, unknowns, found.found.draw(rng, samples))
