@@ -8,6 +8,7 @@ import pytest
 import disorder_landscape as dl
 from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.invert import invert
+from disorder_landscape.inference.landscape_hint import landscape_hint
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.measurement import Measurement
 from disorder_landscape.inference.problem.noise import noise_of_channels
@@ -267,3 +268,23 @@ def test_starts_that_do_not_agree_end(whole, far):
 
 def test_no_answer_of_a_whole_landscape_is_surely_right(whole):
     assert not is_surely_right(replace(whole, variance=np.full(DATA, 1e-12)))
+
+
+@pytest.mark.parametrize(
+    ("highest", "prior", "says"),
+    [
+        (4.2, Prior(components=None), ""),
+        (0.6, Prior(components=None), "µ goes up to 0.6 meV, and should go up to 4 for 300 sites"),
+        (0.6, Prior(components=None, sites=60), "should go up to 0.72 for 60 sites"),
+        (0.6, Prior(components=None, amplitude=0.3), ""),
+        (3.0, Prior(components=None, lever_arm=2.0), ""),
+        (0.6, Prior(components=3), ""),
+    ],
+)
+def test_mu_should_go_up_as_far_as_disorder_scatters(highest, prior, says):
+    """As σ²L: where V is a fifth, a 25th of µ suffices."""
+    measurement = replace(NOTHING, mu=np.linspace(0, highest, 12))
+    unknowns = Unknowns(prior.for_measurement(measurement))
+    hint = landscape_hint(Observation(measurement, unknowns, noise_of_channels(NOISE)))
+    assert (hint == "") == (says == "")
+    assert says in hint

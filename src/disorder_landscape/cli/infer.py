@@ -142,6 +142,7 @@ def _infer_alone(settings: Settings, task: Task) -> None:
     from disorder_landscape.files import check_writable
     from disorder_landscape.inference.file import infer_file
     from disorder_landscape.inference.given import network_given, observation_of
+    from disorder_landscape.inference.landscape_hint import landscape_hint
     from disorder_landscape.inference.noise_hints import noise_hint
     from disorder_landscape.inference.plot import PAGE
     from disorder_landscape.inference.problem.noise import stated_noise
@@ -167,6 +168,8 @@ def _infer_alone(settings: Settings, task: Task) -> None:
         training = load_model_config(existing_folder(settings.model)).training
         if hint := noise_hint(training, errors):
             print(hint)
+    if hint := landscape_hint(observation):
+        print(hint)
     announce_inference(observation)
     with resumable(), inference_progress() as progress:
         result = infer_file(settings, task, progress)
