@@ -36,7 +36,10 @@ from disorder_landscape.inference.search.regression import residual_variance, ri
 
 @dataclass(frozen=True)
 class RoundSettings:
-    """How many wires a round simulates, how far it trusts its answer, and when rounds end."""
+    """How many wires a round simulates, how far it trusts its answer, and when rounds end.
+
+    Answers do not depend on any of it; the time does (docs/design/decisions.md, "Rounds").
+    """
 
     samples_per_unknown: float = 10.0
     """Wires that are simulated in each round, for each unknown, …"""
