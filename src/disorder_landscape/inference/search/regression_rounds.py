@@ -38,7 +38,8 @@ from disorder_landscape.inference.search.regression import residual_variance, ri
 class RoundSettings:
     """How many wires a round simulates, how far it trusts its answer, and when rounds end.
 
-    Answers do not depend on any of it; the time does (docs/design/decisions.md, "Rounds").
+    Of 5+1 components answers do not depend on any of it; the time does (docs/design/decisions.md,
+    "Rounds").
     """
 
     samples_per_unknown: float = 10.0
