@@ -274,15 +274,23 @@ def test_no_answer_of_a_whole_landscape_is_surely_right(whole):
     ("highest", "prior", "says"),
     [
         (4.2, Prior(components=None), ""),
-        (0.6, Prior(components=None), "µ goes up to 0.6 meV, and should go up to 4 for 300 sites"),
-        (0.6, Prior(components=None, sites=60), "should go up to 0.72 for 60 sites"),
+        (
+            0.6,
+            Prior(components=None),
+            "It is known to be found from 4 meV on (300 sites",
+        ),
+        (
+            0.6,
+            Prior(components=None, sites=60),
+            "from 2.8 meV on (60 sites of this disorder).",
+        ),
         (0.6, Prior(components=None, amplitude=0.3), ""),
         (3.0, Prior(components=None, lever_arm=2.0), ""),
         (0.6, Prior(components=3), ""),
     ],
 )
 def test_mu_should_go_up_as_far_as_disorder_scatters(highest, prior, says):
-    """As σ²L: where V is a fifth, a 25th of µ suffices."""
+    """… and above V itself."""
     measurement = replace(NOTHING, mu=np.linspace(0, highest, 12))
     unknowns = Unknowns(prior.for_measurement(measurement))
     hint = landscape_hint(Observation(measurement, unknowns, noise_of_channels(NOISE)))
