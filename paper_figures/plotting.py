@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 
 from disorder_landscape.studies.crossings import R2_AIMED_AT
 from disorder_landscape.studies.trainings_table import read_table
-from disorder_landscape.symbols import LOCAL, LOCAL_COLOURS, NONLOCAL_COLOURS, axis_label
+from disorder_landscape.symbols import LOCAL, axis_label, colour_scale
 
 COLUMN, FULL_WIDTH = 3.404, 7.06
 """REVTeX's widths in inches."""
@@ -89,10 +89,9 @@ def conductance_scale(G: xr.DataArray) -> tuple[Normalize, str]:
     Local ones are drawn from 0 to their maximum, nonlocal ones symmetrically about 0, their
     sharpest peaks cut off.
     """
-    if G.name in LOCAL:
-        return Normalize(0.0, _rounded_up(float(G.max()))), LOCAL_COLOURS
-    limit = _rounded_up(float(np.quantile(np.abs(G), 1 - CLIPPED_SHARE)))
-    return Normalize(-limit, limit), NONLOCAL_COLOURS
+    largest = G.max() if G.name in LOCAL else np.quantile(np.abs(G), 1 - CLIPPED_SHARE)
+    scale = colour_scale(str(G.name), _rounded_up(float(largest)))
+    return Normalize(scale["vmin"], scale["vmax"]), scale["cmap"]
 
 
 def conductance_unit(name: str) -> tuple[float, str]:

@@ -26,7 +26,7 @@ from disorder_landscape.observables.visibility import topological_visibility
 from disorder_landscape.parts import needs
 from disorder_landscape.pictures import write_picture
 from disorder_landscape.potential_file import read_potential
-from disorder_landscape.symbols import AXIS_SYMBOLS, colour_scale, symbol
+from disorder_landscape.symbols import axis_value, colour_scale, symbol
 
 
 def chosen_wire(
@@ -142,7 +142,7 @@ def plot_simulation(result: xr.Dataset, path: Path) -> None:
     cut = axes[:2] if result.sizes[axes[1]] == 1 else axes[:1]
     shown = result.isel({name: result.sizes[name] // 2 for name in cut})
     *y, x = sorted(set(axes) - set(cut), key=["bias", "mu", "B"].index)
-    at = [f"{AXIS_SYMBOLS[n][0]} = {float(shown[n]):.3g} {AXIS_SYMBOLS[n][1]}" for n in cut]
+    at = [axis_value(name, f"{float(shown[name]):.3g}") for name in cut]
     if theta := result.attrs.get("theta"):
         at.append(f"field at {np.degrees(theta):.3g}° to the wire")
     figure = Figure(figsize=(12, 3), layout="constrained")

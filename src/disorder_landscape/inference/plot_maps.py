@@ -14,12 +14,12 @@ from disorder_landscape.inference.report import SURE, has_dissipation
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.model.quantities import CONDUCTANCES
 from disorder_landscape.symbols import (
-    AXIS_SYMBOLS,
     NONLOCAL_COLOURS,
     T_IV_COLOURS,
     T_IV_SYMBOL,
     TOPOLOGICAL_COLOURS,
     axis_label,
+    axis_value,
     colour_scale,
     symbol,
 )
@@ -77,8 +77,7 @@ def _compared(result: xr.Dataset, measurement: Measurement, channel: int) -> dic
     colours = colour_scale(name, largest)
     beside = float(result["discrepancy"][channel]) if "discrepancy" in result else 0.0
     std = np.sqrt(errors_variance(result.attrs["noise"][channel]) + beside**2)
-    cut, unit = AXIS_SYMBOLS.get(other, (other, measurement.gate_unit))
-    value = f"{cut} = {axes[other][at]:g} {unit}".strip()
+    value = axis_value(other, f"{axes[other][at]:g}", measurement.gate_unit)
     G_name, all_errors = symbol(name), r"$\sigma$ of the errors"
     gaps = " (grey: not)" if G.mask.any() else ""
     off = f"{G_name}, measured − explained"
