@@ -150,13 +150,10 @@ def _infer_alone(settings: Settings, task: Task) -> None:
     from disorder_landscape.inference.report import summary
     from disorder_landscape.learning.model import existing_folder, load_model_config
     from disorder_landscape.model.parameters import NOISE_FLOOR
-    from disorder_landscape.pictures import check_picture
 
     output, plot = task.output, task.plot
-    check_outputs(output, None, [task.measurement])
+    check_outputs(output, plot, [task.measurement], [PAGE])
     check_writable("output", task.unfinished)
-    if plot is not None:
-        check_picture("plot", plot, [PAGE])
     measured = read_dataset(task.measurement)
     errors = stated_noise(measured.attrs) if settings.noise is None else settings.noise
     prior, network = settings.prior_and_network()

@@ -38,10 +38,15 @@ def made_here() -> dict[str, str]:
     return provenance(command.encode("utf-8", "backslashreplace").decode())  # names may be bytes
 
 
-def check_outputs(output: Path, plot: Path | None, read: Sequence[Path] = ()) -> None:
+def check_outputs(
+    output: Path,
+    plot: Path | None = None,
+    read: Sequence[Path] = (),
+    others: Sequence[str] = (),
+) -> None:
     """Raise an ArgumentError where a command could not write its netCDF file, or its picture.
 
-    Or where its file is one of those that it reads.
+    Or where its file is one of those that it reads. A picture may have other endings, too.
     """
     from disorder_landscape.files import check_netcdf
     from disorder_landscape.pictures import check_picture
@@ -50,7 +55,7 @@ def check_outputs(output: Path, plot: Path | None, read: Sequence[Path] = ()) ->
     same = output.resolve() in {path.resolve() for path in read}
     require(not same, "output", "be another file than those that are read", f"it is '{output}'")
     if plot is not None:
-        check_picture("plot", plot)
+        check_picture("plot", plot, others)
 
 
 def wrote(output: Path, plot: Path | None = None) -> str:

@@ -28,7 +28,7 @@ def predict(
     from disorder_landscape.learning.prediction import predict as predict_labels
     from disorder_landscape.model.quantities import CONDUCTANCES
 
-    check_outputs(output, None, [measurement])
+    check_outputs(output, read=[measurement])
     Y = predict_labels(model, read_dataset(measurement, CONDUCTANCES)[list(CONDUCTANCES)])
     write_dataset(Y, output, made_here())
     print(wrote(output))

@@ -59,7 +59,7 @@ def verify(
     from disorder_landscape.learning.model import load_model_config
 
     if output is not None:
-        check_outputs(output, None, (prediction, *measurements))
+        check_outputs(output, read=(prediction, *measurements))
     config = None if model is None else load_model_config(model).dataset
     predicted = read_dataset(prediction, ("potential",))
     measured = [read_dataset(path) for path in measurements]
