@@ -130,9 +130,9 @@ def grid_in(
     require(grid.ndim == 1, name, must, f"it has shape {grid.shape}")
     require(grid.size > 0, name, must, "it is empty")
     require(bool(np.isfinite(grid).all()), name, must, "it holds NaN or infinity")
-    (twice,) = np.nonzero(grid[1:] == grid[:-1])
-    but = "it is not sorted in increasing order"
-    but = f"{grid[twice[0]]:.9g} {unit} occurs twice" if twice.size else but
+    twice = grid[1:][grid[1:] == grid[:-1]]
+    unsorted = "it is not sorted in increasing order"
+    but = f"{twice[0]:.9g} {unit} occurs twice" if twice.size else unsorted
     require(bool((grid[1:] > grid[:-1]).all()), name, must, but)
     for value in (grid[0], grid[-1]):
         within = f"lie between {low:.9g} and {high:.9g} {unit}"

@@ -43,8 +43,12 @@ def result_of(observation: Observation, outcome: Outcome, samples: int, seed: in
     """Return the dataset of `infer`, but for the attributes that tell how it was found."""
     unknowns, covariance = observation.unknowns, outcome.answer.covariance
     X = outcome.draw(np.random.default_rng([seed, Stream.SAMPLES]), samples)
-    parts = [_of_most_probable(observation, outcome), _of_samples(observation, X)]
-    parts += [_potential(unknowns, outcome, X), maxima_of(observation, outcome)]
+    parts = [
+        _of_most_probable(observation, outcome),
+        _of_samples(observation, X),
+        _potential(unknowns, outcome, X),
+        maxima_of(observation, outcome),
+    ]
     dataset = with_units(xr.merge(parts)).merge(_parameters(unknowns, outcome, X))
     limits = at_limit(dataset, unknowns.parameters)
     dataset.attrs = {

@@ -211,13 +211,9 @@ class Unknowns:
 
     def potential_std(self, covariance: FloatArray) -> FloatArray:
         """Return the standard deviation of V on each site in meV, shape (site,)."""
-        variance = self._variance(self.to_potential, covariance)
+        n, L = self.of_disorder, self.to_potential
+        variance = np.einsum("si,ij,sj->s", L, covariance[:n, :n], L)
         return np.asarray(np.sqrt(np.maximum(variance, 0.0)))
-
-    def _variance(self, L: FloatArray, covariance: FloatArray) -> FloatArray:
-        """Return the variance of Lξ, shape (site,)."""
-        n = self.of_disorder
-        return np.asarray(np.einsum("si,ij,sj->s", L, covariance[:n, :n], L))
 
     @property
     def label_std(self) -> FloatArray:
