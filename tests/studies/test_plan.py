@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import pytest
@@ -9,7 +10,9 @@ import pytest
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.runs import REPOSITORY
 from disorder_landscape.studies.plan import load_study
-from disorder_landscape.studies.study import Place, study_names
+from disorder_landscape.studies.rows import stored_settings
+from disorder_landscape.studies.runner import carry_out
+from disorder_landscape.studies.study import PLANS, Place, study_names
 from disorder_landscape.studies.trainings import PlannedRun
 
 PLAN = """
@@ -145,8 +148,31 @@ ELSEWHERE = {"accuracy", "accuracy_hot", "accuracy_dissipation", "odd_wires"}
 
 
 @pytest.mark.parametrize("name", sorted(set(study_names()) - ELSEWHERE))
-def test_the_tables_of_this_repository_are_complete(name, tmp_path):
-    assert not load_study(name).missing(Place(REPOSITORY / "results", tmp_path))
+def test_the_tables_of_this_repository_are_those_of_its_plans(name, tmp_path):
+    study, place = load_study(name), Place(REPOSITORY / "results", tmp_path)
+    assert not study.missing(place)
+    assert stored_settings(study.table(place)) == study.plan.settings()
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "said"),
+    [
+        ("verification", "controls = 19", "controls = 99", "controls = 19, and the plan of 99"),
+        ("devices", "B_points = 20", "B_points = 9", "device, B_points = 20, and the plan of 9"),
+        ("devices", '"short_wire"', '"wide"', "short wire, prior, components = all, and the plan"),
+        ("unmodelled", "every = 2", "every = 3", "every = 2, and the plan of 3"),
+    ],
+)
+@pytest.mark.parametrize("share", ["", ".share-1-of-2"])
+def test_rows_of_other_settings_are_no_rows_of_a_plan(name, old, new, said, share, tmp_path):
+    for ending in (".csv", ".json"):
+        shutil.copy(REPOSITORY / "results" / f"{name}{ending}", tmp_path / f"{name}{share}{ending}")
+    plan, content = tmp_path / f"{name}.toml", (PLANS / f"{name}.toml").read_text()
+    plan.write_text(content.replace(old, new, 1))
+    before = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    with pytest.raises(ArgumentError, match=said):
+        carry_out(load_study(plan), Place(tmp_path, tmp_path / "build"))
+    assert {path: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()} == before
 
 
 def test_the_papers_network_without_noise_is_that_of_the_recipes():

@@ -59,6 +59,7 @@ class CalibrationPlan(Plan):
     """Of the chains."""
 
     keys: ClassVar = ("model", "index")
+    common: ClassVar = ("noise", "length")
 
     def tasks(self) -> Sequence[Task]:
         """Return the chains, by model and index."""

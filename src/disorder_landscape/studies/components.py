@@ -55,6 +55,7 @@ class ComponentsPlan(Plan):
     wires: tuple[Wires, ...]
 
     keys: ClassVar = ("components", "noise", "index")
+    common: ClassVar = ("points", "biases")
 
     def tasks(self) -> Sequence[Task]:
         """Return the tasks, by components, noise and index."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 import pandas as pd
@@ -74,6 +74,13 @@ class DevicesPlan(Plan):
             for noise in group.noise
             for index in range(group.count)
         )
+
+    def settings(self) -> dict[str, Any]:
+        """Return the priors of the devices, and where they are measured, by group."""
+        return {
+            group.name: {"prior": named_prior(group.prior).to_dict(), **group.points}
+            for group in self.devices
+        }
 
     def rows(self, task: Task, place: Place) -> list[dict[str, object]]:
         """Draw a device, measure it, invert the measurement."""

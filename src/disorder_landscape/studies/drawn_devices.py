@@ -9,6 +9,7 @@ from __future__ import annotations
 import zlib
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -33,6 +34,11 @@ class Grid(Part):
     """Between zero and the paper's largest field."""
     biases: Positive
     """Between the paper's largest ones."""
+
+    @property
+    def points(self) -> dict[str, Any]:
+        """These fields, as JSON may hold them."""
+        return self.model_dump(mode="json", include=set(Grid.model_fields))
 
     @property
     def grid(self) -> Measurement:

@@ -69,6 +69,13 @@ class EvidencePlan(Plan):
             for index in range(group.count)
         ]
 
+    def settings(self) -> dict[str, Any]:
+        """Return the priors, and where devices are measured with which noise, by group."""
+        return {
+            group.name: {"priors": group.priors, "noise": group.noise, **group.points}
+            for group in self.groups
+        }
+
     def rows(self, task: Task, place: Place) -> list[dict[str, object]]:
         """Draw a device, measure it, and invert the measurement with each prior."""
         return rows_of(task, by_name(self.groups, task.group))

@@ -62,6 +62,7 @@ class HotToColdPlan(Plan):
     """Of each posterior."""
 
     keys: ClassVar = ("temperature", "noise", "index")
+    common: ClassVar = ("cold", "points", "samples")
 
     def tasks(self) -> Sequence[Task]:
         """Return the tasks, by temperature, noise and index."""

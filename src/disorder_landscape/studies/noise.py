@@ -59,6 +59,7 @@ class NoisePlan(TrainedPlan):
     """Standard deviations in e²/h."""
 
     keys: ClassVar = ("training", "training_noise", "seed")
+    common: ClassVar = ("noise",)
 
     def tasks(self) -> Sequence[Task]:
         """Return the networks."""

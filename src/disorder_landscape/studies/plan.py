@@ -21,7 +21,7 @@ from disorder_landscape.studies.hot_to_cold import HotToColdPlan
 from disorder_landscape.studies.inversions import InversionsPlan
 from disorder_landscape.studies.noise import NoisePlan
 from disorder_landscape.studies.odd_wires import OddWiresPlan
-from disorder_landscape.studies.rows import Row, read_rows
+from disorder_landscape.studies.rows import Row, read_rows, stored_settings
 from disorder_landscape.studies.smoothers import SmoothersPlan
 from disorder_landscape.studies.starts import StartsPlan
 from disorder_landscape.studies.study import PLANS, Place, Plan, study_names
@@ -100,6 +100,23 @@ class Study:
         there = {self.key_of_row(row) for table in tables for row in read_rows(table)}
         return [task for task in place.share.of(self.tasks) if self.key(task) not in there]
 
+    def check_tables(self, place: Place) -> None:
+        """Require that no table has rows of other settings than the plan's.
+
+        Raises
+        ------
+        ArgumentError
+            If one has.
+        """
+        now = self.plan.settings()
+        for table in (self.table(place), *self.tables_of_shares(place)):
+            then = stored_settings(table)
+            for name in sorted(now.keys() & then.keys()):
+                must = "have rows of this plan, or none: move the table, or use another --output"
+                which, old, new = _where_they_differ(name, then[name], now[name])
+                but = f"'{table.name}' is of {which} = {old}, and the plan of {new}"
+                require(old == new, "output", must, but)
+
     def key(self, task: Any) -> tuple[Any, ...]:
         """Return what tells a task from every other."""
         return tuple(getattr(task, name) for name in self.plan.keys)
@@ -123,6 +140,14 @@ class Study:
     @cached_property
     def _types(self) -> list[type]:
         return [type(value) for value in self.key(self.tasks[0])]
+
+
+def _where_they_differ(name: str, old: Any, new: Any) -> tuple[str, Any, Any]:
+    """Return the name of the first setting that differs, in two of a name, and both values."""
+    if not (isinstance(old, dict) and isinstance(new, dict)) or old == new:
+        return name, old, new
+    inner = next(key for key in {**old, **new} if old.get(key) != new.get(key))
+    return _where_they_differ(f"{name}, {inner}", old.get(inner), new.get(inner))
 
 
 def load_study(name: str | Path) -> Study:

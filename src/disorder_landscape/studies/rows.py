@@ -20,6 +20,8 @@ Row = dict[str, str]
 
 CHECKSUM, CHECKSUM_BEFORE = "sha256", "sha256_before"
 """Keys of a table's provenance: a run that is killed may leave either the new table or the last."""
+SETTINGS = "settings"
+"""Key of what rows depend on besides what they state."""
 
 
 def read_rows(path: Path) -> list[Row]:
@@ -47,20 +49,29 @@ def read_rows(path: Path) -> list[Row]:
     return rows
 
 
-def write_rows(path: Path, rows: Sequence[Row], command: str) -> None:
-    """Write a table, and beside it what made it (JSON, with the table's checksum)."""
+def write_rows(
+    path: Path, rows: Sequence[Row], command: str, settings: Mapping[str, object] | None = None
+) -> None:
+    """Write a table, and beside it what made it (JSON, with settings and the table's checksum)."""
     text = io.StringIO(newline="")
     columns = list(dict.fromkeys(column for row in rows for column in row))
     writer = csv.DictWriter(text, columns, restval="", lineterminator="\n")
     writer.writeheader()
     writer.writerows(rows)
     content = text.getvalue().encode()
-    made = {**provenance(command), CHECKSUM: hashlib.sha256(content).hexdigest()}
+    made: dict[str, object] = {**provenance(command), CHECKSUM: hashlib.sha256(content).hexdigest()}
+    if settings:
+        made[SETTINGS] = settings
     if path.exists():
         made[CHECKSUM_BEFORE] = hashlib.sha256(path.read_bytes()).hexdigest()
     write_json(path.with_suffix(".json"), {**stored_numbers(path), "provenance": made})
     with replacing(path) as temporary:
         temporary.write_bytes(content)
+
+
+def stored_settings(path: Path) -> dict[str, Any]:
+    """Return the settings with which a table was made; nothing if it states none."""
+    return dict(stored_numbers(path).get("provenance", {}).get(SETTINGS, {}))
 
 
 def stored_numbers(path: Path) -> dict[str, Any]:

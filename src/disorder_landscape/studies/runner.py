@@ -39,8 +39,10 @@ def carry_out(study: Study, place: Place, limit: int | None = None) -> Derived:
     Raises
     ------
     ArgumentError
-        If a table or a folder cannot be read or written; what was finished stays.
+        If a table or a folder cannot be read or written, or has rows of other settings; what was
+        finished stays.
     """
+    study.check_tables(place)
     if not place.share.is_whole:
         return _carry_out(study, place, limit)
     with kept_from_others(study.table(place).parent, study.name):
@@ -108,7 +110,7 @@ def _add(study: Study, place: Place, new: Iterable[Row]) -> None:
     if not study.plan.keeps_others:
         rows = [row for row in rows if study.key_of_row(row) in order]
     rows.sort(key=lambda row: order.get(study.key_of_row(row), len(order)))
-    write_rows(path, rows, study.command)
+    write_rows(path, rows, study.command, study.plan.settings())
 
 
 def _conclude(study: Study, place: Place, has_new: bool) -> Derived:

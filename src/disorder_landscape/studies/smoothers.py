@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import time
 from functools import partial
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
@@ -40,6 +40,8 @@ class SmoothersPlan(FreshWiresPlan):
     """Of the library."""
     ratio: Annotated[float, Field(ge=1)]
     """Of the inflations of two steps, one after the other."""
+
+    common: ClassVar = ("ensemble", "steps", "ratio")
 
     def rows(self, task: Task, place: Place) -> list[dict[str, object]]:
         """Let both invert one measurement."""

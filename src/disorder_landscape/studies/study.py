@@ -87,6 +87,8 @@ class Plan(Part):
 
     keys: ClassVar[tuple[str, ...]]
     """Columns that tell the rows of a task from others'; attributes of a task, of the same name."""
+    common: ClassVar[tuple[str, ...]] = ()
+    """Fields on which all rows depend. The others say which tasks there are."""
     tasks_resume: ClassVar[bool] = False
     """Whether a task that is ended at any moment goes on from there when it is asked for again."""
     keeps_others: ClassVar[bool] = True
@@ -95,6 +97,10 @@ class Plan(Part):
     @abstractmethod
     def tasks(self) -> Sequence[Any]:
         """Return the tasks, in the order of the table."""
+
+    def settings(self) -> dict[str, Any]:
+        """Return what rows depend on besides their keys, as JSON may hold it."""
+        return self.model_dump(mode="json", include=set(self.common))
 
     def prepare(self, tasks: Sequence[Any], place: Place) -> None:
         """Make what these tasks have in common, before they are carried out."""

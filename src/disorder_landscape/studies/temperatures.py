@@ -57,6 +57,7 @@ class TemperaturesPlan(Plan):
     """Of μ, and of B."""
 
     keys: ClassVar = ("temperature",)
+    common: ClassVar = ("cold", "wires", "seed", "points")
 
     def tasks(self) -> Sequence[Task]:
         """Return the hot temperatures."""

@@ -78,6 +78,7 @@ class UniquenessPlan(Plan):
     grids: tuple[Grids, ...]
 
     keys: ClassVar = ("components", "points", "biases", "temperature", "index")
+    common: ClassVar = ("noise",)
 
     def tasks(self) -> Sequence[Setting]:
         """Return the settings in order."""

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -89,6 +89,7 @@ class UnmodelledPlan(Plan):
     wires: tuple[Wires, ...]
 
     keys: ClassVar = ("model", "prior", "noise", "kind", "index")
+    common: ClassVar = ("samples", "every")
 
     def tasks(self) -> Sequence[Task]:
         """Return the tasks, by model, prior, noise, kind and index."""
@@ -100,6 +101,11 @@ class UnmodelledPlan(Plan):
             for kind in group.other
             for index in range(group.count)
         )
+
+    def settings(self) -> dict[str, Any]:
+        """Return what all rows have in common, and the priors by name."""
+        names = {group.prior for group in self.wires if group.prior is not None}
+        return {**super().settings(), **{name: named_prior(name).to_dict() for name in names}}
 
     def rows(self, task: Task, place: Place) -> list[dict[str, object]]:
         """Invert the measurement of a wire that is not as the model has it."""

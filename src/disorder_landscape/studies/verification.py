@@ -57,6 +57,7 @@ class VerificationPlan(Plan):
     """Of V that are tried."""
 
     keys: ClassVar = ("index",)
+    common: ClassVar = ("controls", "shifts")
 
     def tasks(self) -> Sequence[Task]:
         """Return the first test wires."""
