@@ -21,7 +21,8 @@ from disorder_landscape.model.parameters import (
 )
 from disorder_landscape.model.quantities import AXES, CONDUCTANCES, with_units
 from disorder_landscape.model.ranges import STATED
-from disorder_landscape.observables.conductance import Progress, conductance
+from disorder_landscape.observables.conductance import conductance
+from disorder_landscape.observables.grids import Progress
 from disorder_landscape.observables.visibility import topological_visibility
 from disorder_landscape.parts import needs
 from disorder_landscape.pictures import write_picture

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from disorder_landscape import conductance
+from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.model.parameters import BIAS
 from disorder_landscape.model.quantities import CONDUCTANCES
 from disorder_landscape.solver.energy_grid import ENERGY_SPACING
@@ -56,3 +57,8 @@ def test_the_bare_conductance_of_many_biases_takes_little_memory():
         matrix(conductance(wire, 0.1, 0.3, V, temperature=0.0))[:, 0, 0, 0] for V in bias[some]
     ]
     np.testing.assert_allclose(many[:, some], np.transpose(one_by_one), atol=1e-12)
+
+
+def test_where_nothing_is_averaged_there_is_no_spacing():
+    with pytest.raises(ArgumentError, match="energy_spacing must not be given at T = 0"):
+        conductance(random_wire(0), 0.1, 0.3, temperature=0.0, energy_spacing=1e-3)

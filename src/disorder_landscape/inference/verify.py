@@ -33,7 +33,7 @@ from disorder_landscape.inference.verification.compared import compared
 from disorder_landscape.inference.verification.comparison import SIGNIFICANCE, comparison
 from disorder_landscape.inference.verification.mismatch import mean_squares, simulations
 from disorder_landscape.inference.verification.predictive import p_of_samples
-from disorder_landscape.observables.conductance import Progress
+from disorder_landscape.observables.grids import Progress
 
 
 def verify(

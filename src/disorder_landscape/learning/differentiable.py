@@ -16,7 +16,8 @@ from disorder_landscape.model.parameters import TEMPERATURE, FloatArray, Nanowir
 from disorder_landscape.model.quantities import AXES, CONDUCTANCES
 from disorder_landscape.model.ranges import checked_temperature
 from disorder_landscape.observables.conductance import conductance
-from disorder_landscape.observables.gradient import checked_grids, conductance_gradient
+from disorder_landscape.observables.gradient import conductance_gradient
+from disorder_landscape.observables.grids import checked_grids
 
 Tensor = Any
 """Of TensorFlow, which has no types."""
@@ -64,7 +65,7 @@ def differentiable_conductance(
     must = f"be some of {', '.join(OF_THE_WIRE)}, each once"
     names = names_in("parameters", parameters, OF_THE_WIRE, must)
     require(len(set(names)) == len(names), "parameters", must, "one is there twice")
-    grids = checked_grids(wire, mu, B, bias)
+    grids = checked_grids([wire], mu, B, bias)
     axes = grids["mu"], grids["B"], grids["bias"]
     point = *axes, temperature
     tf = import_module("tensorflow")  # it takes seconds
@@ -114,7 +115,7 @@ def differentiable_conductance(
             require(fits, name, must, f"it is {tuple(tensor.shape)}")
         if tf.executing_eagerly():
             for values in zip(*(tensor.numpy() for tensor in tensors), strict=True):
-                checked_grids(changed(values), *axes)
+                checked_grids([changed(values)], *axes)
 
     def of_tensors(*given: Tensor) -> Tensor:
         one_each = f"be one for each of {', '.join(names)}"

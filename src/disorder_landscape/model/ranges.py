@@ -29,7 +29,11 @@ STATED = tuple(name for name in PARAMETER_RANGES if name not in FOLLOWING)
 COLDEST, HOTTEST = 1e-6, 10.0
 """Range of temperatures above zero in K."""
 BARRIER_RANGE = (-1e3, 1e3, "meV")
-"""The same of the barriers."""
+"""The same of the barriers, …"""
+MU_RANGE = (-1e3, 1e3, "meV")
+"""… of chemical potentials, …"""
+B_RANGE = (-100.0, 100.0, "T")
+"""… and of fields."""
 
 
 def checked_temperature(temperature: object) -> float:

@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from disorder_landscape.arguments import check_progress, grid_in, number_in
+from disorder_landscape.arguments import check_progress, number_in, require
 from disorder_landscape.model.hamiltonian import FULL_TURN
-from disorder_landscape.model.parameters import BOLTZMANN, TEMPERATURE, Nanowire
+from disorder_landscape.model.parameters import BOLTZMANN, TEMPERATURE, FloatArray, Nanowire
 from disorder_landscape.model.quantities import CONDUCTANCES, with_units
 from disorder_landscape.model.ranges import checked_temperature
+from disorder_landscape.observables.grids import Progress, checked_grids
 from disorder_landscape.solver import routes
 from disorder_landscape.solver.energy_grid import ENERGY_SPACING, thermal_grid
-
-Progress = Callable[[int, int], None]
 
 
 def conductance(
@@ -42,13 +41,13 @@ def conductance(
     temperature : float
         In K, 0 or from 1e-6 to 10; 0 gives the bare conductance at ω = bias.
     solver : {"fast", "kwant"}
-        The real recursion, or Kwant, the reference, thousands of times slower.
+        Our own recursion, or Kwant, the reference, thousands of times slower.
     energy_spacing : float, optional
         Average over a grid of energies within 10 kT of at most this spacing in meV, at most kT, as
         the paper does, instead of exactly. What is farther away, 10⁻⁴ of the thermal weight, is
         left out. Kwant always does so, by default at 0.5 µeV.
     progress : callable, optional
-        Called with the number of pairs (μ, B) that have just been done, and that of all pairs.
+        Called with the number of points (wire, μ, B) that have just been done, and that of all.
     theta : float
         Angle of the field relative to the wire in radians, θ of Eq. S1. All but 0, the paper's,
         take a slower route.
@@ -70,64 +69,99 @@ def conductance(
     """
     wires, solver = routes.wires_of(wire), routes.known_solver(solver)
     check_progress(progress)
-    fields = grid_in("B", B, -100.0, 100.0, "T")
-    delta0 = min(w.in_field(abs(fields).max()).delta0 for w in wires)
-    grids = {
-        "mu": grid_in("mu", mu, -1e3, 1e3, "meV"),
-        "B": fields,
-        "bias": grid_in("bias", bias, -delta0 * (1 - 1e-6), delta0 * (1 - 1e-6), "meV"),
-    }
+    grids = checked_grids(wires, mu, B, bias)
     temperature = checked_temperature(temperature)
     theta = number_in("theta", theta, -FULL_TURN, FULL_TURN, "radians")
-    shape = (len(wires), grids["mu"].size, grids["B"].size)
+    must = "not be given at T = 0, where nothing is averaged"
+    averaged = temperature > 0 or energy_spacing is None
+    require(averaged, "energy_spacing", must, f"it is {energy_spacing}")
     report = progress if progress is not None else lambda done, total: None
-    exact = temperature > 0 and solver == "fast" and energy_spacing is None
-    G = np.empty((*shape, grids["bias"].size, 4))
-    error, energies = np.zeros(shape), np.zeros(shape, dtype=np.int64)
-    if exact:
-        for some, points, some_fields in _blocks(shape, routes.sets_at_once(theta)):
-            at = some, points, some_fields
-            G[at], error[at], energies[at] = routes.thermal_average(
-                wires[some],
-                grids["mu"][points],
-                fields[some_fields],
-                grids["bias"],
-                temperature,
-                theta,
-            )
-            report(error[at].size, error.size)
+    if temperature > 0 and solver == "fast" and energy_spacing is None:
+        G, of_average = _exact(wires, grids, temperature, theta, report)
     else:
-        if temperature > 0:
-            kT = BOLTZMANN * temperature  # a coarser grid would miss the kernel altogether
-            spacing = min(ENERGY_SPACING, kT) if energy_spacing is None else energy_spacing
-            spacing = number_in("energy_spacing", spacing, 1e-7, kT, "meV")
-            omega, weights = thermal_grid(grids["bias"], temperature, delta0, spacing)
-        else:
-            omega, of_bias = np.unique(abs(grids["bias"]), return_inverse=True)
-            side = (grids["bias"] < 0).astype(int)
-        most = routes.energies_at_once(solver, theta) // omega.size
-        for some, points, some_fields in _blocks(shape, most):
-            some_wires, mus, fs = wires[some], grids["mu"][points], fields[some_fields]
-            G0 = routes.bare_conductance(some_wires, mus, fs, omega, theta, solver)
-            if temperature > 0:
-                G[some, points, some_fields] = np.einsum("wmbkse,vks->wmbve", G0, weights)
-            else:
-                G[some, points, some_fields] = G0[:, :, :, of_bias, side]
-            report(G0[..., 0, 0, 0].size, error.size)
-    missing = np.isnan(G).any(axis=(3, 4)).sum()
-    if missing:
-        message = f"At {missing} of {error.size} points (wire, μ, B) a conductance is no number"
-        warnings.warn(f"{message}: there the solver failed.", RuntimeWarning, stacklevel=2)
-    data: dict[str, Any]
+        delta0 = min(w.in_field(abs(grids["B"]).max()).delta0 for w in wires)
+        omega, combined = _at_energies(grids["bias"], temperature, delta0, energy_spacing)
+        G, of_average = _combined(wires, grids, omega, combined, theta, solver, report), {}
+    missing = np.isnan(G).any(axis=(3, 4))
+    if missing.any():
+        message = f"At {missing.sum()} of {missing.size} points (wire, μ, B) a conductance is no"
+        warnings.warn(f"{message} number: there the solver failed.", RuntimeWarning, stacklevel=2)
     data = {name: (("realization", *grids), G[..., i]) for i, name in enumerate(CONDUCTANCES)}
-    if exact:
-        data["error"] = (("realization", "mu", "B"), error)
-        data["energies"] = (("realization", "mu", "B"), energies)
+    data |= {name: (("realization", "mu", "B"), values) for name, values in of_average.items()}
     attrs = {"temperature": temperature, "solver": solver, "theta": theta}
     if len({w.barrier for w in wires}) == 1:
         attrs["barrier"] = wires[0].barrier
     dataset = with_units(xr.Dataset(data, coords=grids, attrs=attrs))
     return dataset.isel(realization=0) if isinstance(wire, Nanowire) else dataset
+
+
+Grids = Mapping[str, FloatArray]
+
+
+def _shape(wires: Sequence[Nanowire], grids: Grids) -> tuple[int, int, int]:
+    return len(wires), grids["mu"].size, grids["B"].size
+
+
+def _exact(
+    wires: Sequence[Nanowire], grids: Grids, temperature: float, theta: float, report: Progress
+) -> tuple[FloatArray, dict[str, NDArray[Any]]]:
+    """Return exact averages (wire, mu, B, bias, 4), their errors, and how many energies they took.
+
+    The latter, shape (wire, mu, B), by name.
+    """
+    shape = _shape(wires, grids)
+    G = np.empty((*shape, grids["bias"].size, 4))
+    error, energies = np.zeros(shape), np.zeros(shape, dtype=np.int64)
+    for at in _blocks(shape, routes.sets_at_once(theta)):
+        some, points, fields = at
+        G[at], error[at], energies[at] = routes.thermal_average(
+            wires[some],
+            grids["mu"][points],
+            grids["B"][fields],
+            grids["bias"],
+            temperature,
+            theta,
+        )
+        report(error[at].size, error.size)
+    return G, {"error": error, "energies": energies}
+
+
+def _at_energies(
+    bias: FloatArray, temperature: float, delta0: float, energy_spacing: float | None
+) -> tuple[FloatArray, Callable[[FloatArray], FloatArray]]:
+    """Return energies ω ≥ 0 at which wires are to be solved, and what makes conductances of that.
+
+    From (wire, mu, B, omega, 2, 4), as of `routes.bare_conductance`, to (wire, mu, B, bias, 4).
+    """
+    if temperature == 0:
+        omega, of_bias = np.unique(abs(bias), return_inverse=True)
+        side = (bias < 0).astype(int)
+        return omega, lambda G: G[:, :, :, of_bias, side]
+    kT = BOLTZMANN * temperature  # a coarser grid would miss the kernel altogether
+    spacing = min(ENERGY_SPACING, kT) if energy_spacing is None else energy_spacing
+    spacing = number_in("energy_spacing", spacing, 1e-7, kT, "meV")
+    omega, weights = thermal_grid(bias, temperature, delta0, spacing)
+    return omega, lambda G: np.einsum("wmbkse,vks->wmbve", G, weights)
+
+
+def _combined(
+    wires: Sequence[Nanowire],
+    grids: Grids,
+    omega: FloatArray,
+    combined: Callable[[FloatArray], FloatArray],
+    theta: float,
+    solver: str,
+    report: Progress,
+) -> FloatArray:
+    """Return what is made of conductances at energies ω, shape (wire, mu, B, bias, 4)."""
+    shape = _shape(wires, grids)
+    G = np.empty((*shape, grids["bias"].size, 4))
+    for at in _blocks(shape, routes.energies_at_once(solver, theta) // omega.size):
+        some, points, fields = at
+        places = wires[some], grids["mu"][points], grids["B"][fields]
+        G[at] = combined(routes.bare_conductance(*places, omega, theta, solver))
+        report(G[at][..., 0, 0].size, int(np.prod(shape)))
+    return G
 
 
 def _blocks(shape: tuple[int, int, int], most: int) -> Iterator[tuple[slice, slice, slice]]:

@@ -16,6 +16,7 @@ from disorder_landscape.model.hamiltonian import FULL_TURN, ComplexArray
 from disorder_landscape.model.parameters import BOLTZMANN, FloatArray, Nanowire
 from disorder_landscape.model.quantities import with_units
 from disorder_landscape.model.ranges import checked_temperature
+from disorder_landscape.observables.grids import checked_mu_and_B
 from disorder_landscape.solver import compiled
 from disorder_landscape.solver.compiled import GROWTH_LIMIT
 from disorder_landscape.solver.lead_continuation import continued_self_energies
@@ -72,8 +73,7 @@ def local_density_of_states(
     """
     require(isinstance(wire, Nanowire), "wire", "be a Nanowire", f"it is {shown(wire)}")
     grids = {
-        "mu": grid_in("mu", mu, -1e3, 1e3, "meV"),
-        "B": grid_in("B", B, -100.0, 100.0, "T"),
+        **checked_mu_and_B(mu, B),
         "energy": grid_in("energy", energy, -LIMIT, LIMIT, "meV"),
     }
     temperature = checked_temperature(temperature)

@@ -8,12 +8,13 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from disorder_landscape.arguments import grid_in, number_in, require
+from disorder_landscape.arguments import number_in, require
 from disorder_landscape.model.hamiltonian import FULL_TURN
 from disorder_landscape.model.parameters import BOLTZMANN, FloatArray, Nanowire
 from disorder_landscape.model.quantities import with_units
 from disorder_landscape.model.ranges import checked_temperature
 from disorder_landscape.observables.conductance import conductance
+from disorder_landscape.observables.grids import checked_mu_and_B
 from disorder_landscape.observables.modes import lowest_components, separation
 from disorder_landscape.solver import compiled, routes
 
@@ -73,7 +74,7 @@ def gap(
     wires = routes.wires_of(wire)
     without = all(w.lossless for w in wires)
     require(without, "wire", "have no dissipation for its gap", "it has")
-    grids = {"mu": grid_in("mu", mu, -1e3, 1e3, "meV"), "B": grid_in("B", B, -100.0, 100.0, "T")}
+    grids = checked_mu_and_B(mu, B)
     theta = number_in("theta", theta, -FULL_TURN, FULL_TURN, "radians")
     threshold = number_in("threshold", threshold, 0.0, 1.0)
     temperature = checked_temperature(temperature)

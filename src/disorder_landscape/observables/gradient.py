@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike
 
 from disorder_landscape.arguments import (
     check_progress,
-    grid_in,
     names_in,
     number_in,
     reals,
@@ -22,10 +21,10 @@ from disorder_landscape.arguments import (
 from disorder_landscape.model.parameters import TEMPERATURE, FloatArray, Nanowire
 from disorder_landscape.model.quantities import AXES, CONDUCTANCES, QUANTITIES, with_units
 from disorder_landscape.model.ranges import checked_temperature
+from disorder_landscape.observables.grids import Progress, checked_grids
 from disorder_landscape.solver import gradients
 from disorder_landscape.solver.compiled import GROWTH_LIMIT
 
-Progress = Callable[[int, int], None]
 SETS_AT_ONCE = 64
 """Sets (μ, B) that are differentiated at a time: a fraction of a second."""
 
@@ -93,7 +92,7 @@ def conductance_gradient(
         require(wire.lossless, "wire", "have no dissipation for slopes at T = 0", "it has")
         without = bool(np.isinf(wire.critical_field))
         require(without, "wire", "have no critical field for slopes at T = 0", "it has")
-    grids = checked_grids(wire, mu, B, bias)
+    grids = checked_grids([wire], mu, B, bias)
     fields = grids["B"]
     maps = direction is None or isinstance(direction, Mapping)
     require(
@@ -126,25 +125,6 @@ def conductance_gradient(
     if "V" in names and not along:
         coordinates["site"] = np.arange(wire.sites)
     return with_units(xr.Dataset(data, coords=coordinates, attrs={"temperature": temperature}))
-
-
-def checked_grids(
-    wire: Nanowire, mu: ArrayLike, B: ArrayLike, bias: ArrayLike
-) -> dict[str, FloatArray]:
-    """Return where there are derivatives, which is at biases below the gap.
-
-    Raises
-    ------
-    ArgumentError
-        If a grid is empty, unsorted or out of range.
-    """
-    fields = grid_in("B", B, -100.0, 100.0, "T")
-    edge = wire.in_field(abs(fields).max()).delta0 * (1 - 1e-6)
-    return {
-        "mu": grid_in("mu", mu, -1e3, 1e3, "meV"),
-        "B": fields,
-        "bias": grid_in("bias", bias, -edge, edge, "meV"),
-    }
 
 
 Variable = tuple[tuple[str, ...], Any, dict[str, str]]

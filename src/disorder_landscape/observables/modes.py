@@ -26,6 +26,7 @@ from disorder_landscape.model.hamiltonian import (
 )
 from disorder_landscape.model.parameters import FloatArray, Nanowire
 from disorder_landscape.model.quantities import with_units
+from disorder_landscape.model.ranges import B_RANGE, MU_RANGE
 from disorder_landscape.solver import compiled
 
 NAMBU = ("u_up", "u_down", "-v_down", "v_up")
@@ -74,7 +75,7 @@ def modes(wire: Nanowire, mu: float, B: float, count: int = 1, theta: float = 0.
     """
     require(isinstance(wire, Nanowire), "wire", "be a Nanowire", f"it is {shown(wire)}")
     require(wire.lossless, "wire", "have no dissipation for its levels", "it has")
-    mu, B = number_in("mu", mu, -1e3, 1e3, "meV"), number_in("B", B, -100.0, 100.0, "T")
+    mu, B = number_in("mu", mu, *MU_RANGE), number_in("B", B, *B_RANGE)
     wire = wire.in_field(B)
     theta = number_in("theta", theta, -FULL_TURN, FULL_TURN, "radians")
     count = whole_number_in("count", count, 1, 2 * wire.sites)

@@ -10,10 +10,11 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from disorder_landscape.arguments import grid_in, number_in, require, whether
+from disorder_landscape.arguments import number_in, require, whether
 from disorder_landscape.model.hamiltonian import FULL_TURN
 from disorder_landscape.model.parameters import FloatArray, Nanowire
 from disorder_landscape.model.quantities import with_units
+from disorder_landscape.observables.grids import checked_mu_and_B
 from disorder_landscape.solver import routes
 
 
@@ -50,7 +51,7 @@ def topological_visibility(
         As in `conductance`.
     """
     wires, solver = routes.wires_of(wire), routes.known_solver(solver)
-    grids = {"mu": grid_in("mu", mu, -1e3, 1e3, "meV"), "B": grid_in("B", B, -100.0, 100.0, "T")}
+    grids = checked_mu_and_B(mu, B)
     without = all(w.lossless for w in wires)
     must = "have no dissipation for T_IV"
     require(without, "wire", must, "it has, and nothing is reflected in full")
