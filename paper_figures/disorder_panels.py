@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from disorder_landscape import Nanowire
+from disorder_landscape.config import WireConfig
 from disorder_landscape.model.disorder import positions
 from plotting import FULL_WIDTH, INPUT, PREDICTION, inches, keep_labels_inside, write
 from wires import in_rows, letters
@@ -20,13 +20,15 @@ HEIGHT = COMPONENTS[0] + COMPONENTS[1] + TOP
 """Room that both rows of panels need, in inches."""
 
 
-def disorder_data(chosen: xr.Dataset) -> xr.Dataset:
+def disorder_data(chosen: xr.Dataset, fixed: WireConfig) -> xr.Dataset:
     """Return components and potential of input and prediction.
 
     Parameters
     ----------
     chosen : Dataset
         Of `drawn_realizations`.
+    fixed : WireConfig
+        What all wires have in common.
 
     Returns
     -------
@@ -36,7 +38,10 @@ def disorder_data(chosen: xr.Dataset) -> xr.Dataset:
         the barriers in meV as attribute.
     """
     table = in_rows(chosen)
-    wires = [[Nanowire(V) for V in pair] for pair in table["potential"].to_numpy()]
+    wires = [
+        [fixed.wire(V, float(alpha)) for V, alpha in zip(*pair, strict=True)]
+        for pair in zip(table["potential"].to_numpy(), table["alpha"].to_numpy(), strict=True)
+    ]
     potential = np.array([[wire.potential_with_barriers for wire in pair] for pair in wires])
     attrs = {"units": "meV", "long_name": "disorder potential with barriers"}
     x = positions(wires[0][0].sites, wires[0][0].lattice)

@@ -39,7 +39,8 @@ def data(request: Request) -> xr.Dataset:
         )
         return G[list(CONDUCTANCES)].isel(mu=0)
 
-    return simulate_rows(drawn_realizations(request.evaluation(), config), simulate)
+    chosen = drawn_realizations(request.evaluation(), config)
+    return simulate_rows(chosen, config.dataset.wire, simulate)
 
 
 def draw(data: xr.Dataset) -> Figure:

@@ -19,7 +19,8 @@ from wires import drawn_realizations
 
 def data(request: Request) -> xr.Dataset:
     """Return components and potential of input and prediction, as `disorder_data`."""
-    return disorder_data(drawn_realizations(request.evaluation(), request.config))
+    chosen = drawn_realizations(request.evaluation(), request.config)
+    return disorder_data(chosen, request.config.dataset.wire)
 
 
 def draw(data: xr.Dataset) -> Figure:

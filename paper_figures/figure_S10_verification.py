@@ -20,8 +20,8 @@ from tqdm import tqdm
 
 from command import Request, figure_script
 from disorder_landscape import Nanowire, conductance, verify
-from disorder_landscape.config import Config
-from disorder_landscape.inference.defaults import WIDEST_SHIFT
+from disorder_landscape.config import Config, WireConfig
+from disorder_landscape.inference.defaults import OTHER_ANGLE, OTHER_BARRIERS, shifts
 from disorder_landscape.inference.verification.comparison import scores
 from disorder_landscape.inference.verification.controls import control_wires
 from disorder_landscape.model.quantities import CONDUCTANCES
@@ -41,10 +41,6 @@ from plotting import (
 )
 from wires import drawn_realizations, in_rows, letters
 
-ANGLE = np.pi / 6
-"""θ of the tilted field."""
-BARRIERS = (25.0, 10.0)
-"""Other barriers in meV, left and right."""
 KINDS = ("mu, B", "bias", "barrier", "theta")
 """What is other than in the measurement that the network has seen."""
 ROWS = ("measured", "prediction", "wrong")
@@ -75,29 +71,24 @@ def data(request: Request) -> xr.Dataset:
     verified = []
     for i in tqdm(range(chosen.sizes["realization"]), desc="verify", unit=" wires", delay=2):
         prediction = table.isel(realization=i, row=1, drop=True)
-        true = _wire(table, i, 0)
+        true = _wire(table, i, 0, config.dataset.wire)
         measurements = [_measure(true, kind, config) for kind in KINDS]
         result = verify(
             prediction,
             measurements,
             controls=config.figures.verification_controls,
             config=config.dataset,
-            shifts=_shifts(config.figures.verification_shifts),
+            shifts=shifts(config.figures.verification_shifts),
         )
         verified.append(_by_kind(result))
     panel_a = xr.concat(verified, "realization").assign_coords(realization=chosen["realization"])
     return xr.merge([panel_a, _maps(table, config)]).assign_attrs(
-        barriers=BARRIERS, theta=float(np.degrees(ANGLE))
+        barriers=OTHER_BARRIERS, theta=float(np.degrees(OTHER_ANGLE))
     )
 
 
-def _shifts(count: int) -> np.ndarray:
-    """Return means of V in meV to try, from minus to plus three standard deviations; one is 0."""
-    return WIDEST_SHIFT * (np.arange(count) - (count - 1) / 2) / max((count - 1) / 2, 1)
-
-
-def _wire(table: xr.Dataset, i: int, row: int) -> Nanowire:
-    return Nanowire(table["potential"][i, row].to_numpy(), alpha=float(table["alpha"][i, row]))
+def _wire(table: xr.Dataset, i: int, row: int, fixed: WireConfig) -> Nanowire:
+    return fixed.wire(table["potential"][i, row].to_numpy(), float(table["alpha"][i, row]))
 
 
 def _measure(wire: Nanowire, kind: str, config: Config) -> xr.Dataset:
@@ -110,12 +101,12 @@ def _measure(wire: Nanowire, kind: str, config: Config) -> xr.Dataset:
             dataset.B[:: dataset.B_points // 2][1:],
         )
     return conductance(
-        replace(wire, barrier=BARRIERS) if kind == "barrier" else wire,
+        replace(wire, barrier=OTHER_BARRIERS) if kind == "barrier" else wire,
         mu[:1] if kind == "theta" else mu,
         fields,
         OTHER_BIAS if kind == "bias" else np.array(dataset.bias),
         dataset.temperature,
-        theta=ANGLE if kind == "theta" else 0.0,
+        theta=OTHER_ANGLE if kind == "theta" else 0.0,
     )
 
 
@@ -143,10 +134,16 @@ def _maps(table: xr.Dataset, config: Config) -> xr.Dataset:
     figures, dataset = config.figures, config.dataset
     fields = np.linspace(0.0, dataset.B_max, figures.tilted_B_points)
     bias = np.linspace(-figures.bias_max, figures.bias_max, figures.bias_points)
-    wires = [_wire(table, 0, 0), _wire(table, 0, 1), control_wires(dataset, 1)[0]]
+    pair = [_wire(table, 0, row, dataset.wire) for row in (0, 1)]
+    wires = [*pair, control_wires(dataset, 1)[0]]
     G = [
         conductance(
-            replace(wire, barrier=BARRIERS), 0.0, fields, bias, dataset.temperature, theta=ANGLE
+            replace(wire, barrier=OTHER_BARRIERS),
+            0.0,
+            fields,
+            bias,
+            dataset.temperature,
+            theta=OTHER_ANGLE,
         )
         for wire in tqdm(wires, desc="simulate", unit=" wires", delay=2)
     ]

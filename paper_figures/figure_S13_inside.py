@@ -63,7 +63,8 @@ def data(request: Request) -> xr.Dataset:
             coords={"mu": mu, "B": B, "energy": ENERGIES},
         )
 
-    simulated = simulate_rows(drawn_realizations(request.evaluation(), config), simulate)
+    chosen = drawn_realizations(request.evaluation(), config)
+    simulated = simulate_rows(chosen, config.dataset.wire, simulate)
     return simulated.assign_attrs(lattice=Nanowire.lattice)
 
 

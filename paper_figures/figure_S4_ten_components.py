@@ -23,7 +23,8 @@ from wires import drawn_realizations
 
 def data(request: Request) -> xr.Dataset:
     """Return what Figures 4 and 3 show, of this figure's wires."""
-    disorder = disorder_data(drawn_realizations(request.evaluation(), request.config))
+    chosen = drawn_realizations(request.evaluation(), request.config)
+    disorder = disorder_data(chosen, request.config.dataset.wire)
     conductances = figure_3.data(request).drop_vars("alpha")
     return disorder.assign(conductances.data_vars)
 

@@ -42,7 +42,8 @@ def data(request: Request) -> xr.Dataset:
     def simulate(wire: Nanowire) -> xr.Dataset:
         return topological_visibility(wire, mu, B).sel(lead="L", drop=True).to_dataset()
 
-    return simulate_rows(drawn_realizations(request.evaluation(), config), simulate)
+    chosen = drawn_realizations(request.evaluation(), config)
+    return simulate_rows(chosen, config.dataset.wire, simulate)
 
 
 def draw(data: xr.Dataset) -> Figure:

@@ -10,7 +10,7 @@ from tqdm import tqdm
 
 from disorder_landscape import Nanowire
 from disorder_landscape.arguments import require
-from disorder_landscape.config import Config
+from disorder_landscape.config import Config, WireConfig
 from disorder_landscape.model.quantities import DRAWN
 
 ROWS = ("input", "prediction")
@@ -32,13 +32,17 @@ def drawn_realizations(evaluation: xr.Dataset, config: Config) -> xr.Dataset:
     return evaluation.isel(realization=list(chosen))
 
 
-def simulate_rows(chosen: xr.Dataset, simulate: Callable[[Nanowire], xr.Dataset]) -> xr.Dataset:
+def simulate_rows(
+    chosen: xr.Dataset, fixed: WireConfig, simulate: Callable[[Nanowire], xr.Dataset]
+) -> xr.Dataset:
     """Simulate the true and the predicted wire of each realization, with a progress bar.
 
     Parameters
     ----------
     chosen : Dataset
         Of `drawn_realizations`.
+    fixed : WireConfig
+        What all wires have in common.
     simulate : callable
         Gives what is to be drawn of one wire.
 
@@ -50,7 +54,7 @@ def simulate_rows(chosen: xr.Dataset, simulate: Callable[[Nanowire], xr.Dataset]
     """
     table = in_rows(chosen)
     wires = [
-        Nanowire(table["potential"][i, j].to_numpy(), alpha=float(table["alpha"][i, j]))
+        fixed.wire(table["potential"][i, j].to_numpy(), float(table["alpha"][i, j]))
         for i in range(table.sizes["realization"])
         for j in range(len(ROWS))
     ]

@@ -27,6 +27,7 @@ from disorder_landscape.model.parameters import (
     TEMPERATURE,
     FloatArray,
     Nanowire,
+    check_leads,
 )
 from disorder_landscape.model.ranges import PARAMETER_RANGES, checked_temperature
 from disorder_landscape.toml_file import checked
@@ -49,6 +50,17 @@ class WireConfig(_Section):
     """V_Barrier on the first and on the last site, in meV."""
     lead_mu: Annotated[float, Field(ge=-1e3, le=1e3)] = Nanowire.lead_mu
     """Chemical potential of the leads in meV."""
+
+    @model_validator(mode="after")
+    def _conducting(self) -> WireConfig:
+        check_leads(self.lead_mu, Nanowire.mass, Nanowire.lattice)
+        return self
+
+    def wire(self, potential: FloatArray, alpha: float) -> Nanowire:
+        """Return the wire with this V (site,) in meV and α in meV nm."""
+        return Nanowire(
+            potential, alpha, barrier=(self.barrier, self.barrier), lead_mu=self.lead_mu
+        )
 
 
 class DatasetConfig(_Section):
@@ -167,6 +179,11 @@ class TrainingConfig(_Section):
     def _consistent(self) -> TrainingConfig:
         if self.noise_up_to is not None and not 0 < self.noise <= self.noise_up_to:
             raise ValueError("noise must be more than 0 and at most noise_up_to")
+        if self.networks > 1 and self.realizations is not None:
+            raise ValueError(
+                "networks must be 1 where realizations is given: each seed draws others, and the "
+                "scaling of what networks see and tell follows from them"
+            )
         return self
 
     @property

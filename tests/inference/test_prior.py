@@ -327,6 +327,8 @@ def test_a_normal_distribution_ends_where_the_range_does(name, mean, std, low, h
 def test_leads_that_conduct_nothing_are_refused():
     """Their band is 16.6 meV wide where the lattice spacing is twice the paper's."""
     wide = Prior(3, SITES, mass=0.023, lattice=20.0)
-    with pytest.raises(ArgumentError, match=r"lead_mu must be below 16\.6 meV, .* it is 25"):
+    with pytest.raises(ArgumentError, match=r"lead_mu .* from 0 to 16\.6 meV, .* it is 25 "):
         observation(wide)
+    with pytest.raises(ArgumentError, match=r"from 0 to 16\.6 meV, .* it is -1\."):
+        observation(replace(wide, lead_mu=-1.0))
     assert abs(observation(replace(wide, lead_mu=8.0)).simulate(np.zeros((1, 5)))).max() > 1e-3

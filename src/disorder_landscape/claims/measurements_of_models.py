@@ -111,9 +111,9 @@ def _simulated(model: str, mean: str) -> xr.Dataset:
 
 
 def _test_wires(model: str) -> list[Nanowire]:
-    test, _ = _loaded(model)
+    test, network = _loaded(model)
     pairs = zip(test["potential"].to_numpy(), test["alpha"].to_numpy(), strict=True)
-    return [Nanowire(V, alpha=float(alpha)) for V, alpha in pairs]
+    return [network.config.dataset.wire.wire(V, float(alpha)) for V, alpha in pairs]
 
 
 def _predicted_wires(model: str, mean: str) -> list[Nanowire]:
@@ -126,7 +126,8 @@ def _predicted_wires(model: str, mean: str) -> list[Nanowire]:
     require(mean in means, "mean", f"be one of {', '.join(means)}", f"it is '{mean}'")
     V += (means[mean] - V.mean(axis=1))[:, None]
     pairs = zip(V, predicted["alpha"].to_numpy(), strict=True)
-    return [Nanowire(potential, alpha=float(alpha)) for potential, alpha in pairs]
+    fixed = network.config.dataset.wire
+    return [fixed.wire(potential, float(alpha)) for potential, alpha in pairs]
 
 
 def _r2(true: xr.DataArray, other: xr.DataArray) -> float:

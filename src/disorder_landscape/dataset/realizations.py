@@ -31,12 +31,7 @@ class Realization:
     @property
     def wire(self) -> Nanowire:
         """The wire with this disorder."""
-        return Nanowire(
-            self.potential,
-            alpha=self.alpha,
-            barrier=(self.fixed.barrier, self.fixed.barrier),
-            lead_mu=self.fixed.lead_mu,
-        )
+        return self.fixed.wire(self.potential, self.alpha)
 
 
 def realization(config: DatasetConfig, index: int) -> Realization:

@@ -73,8 +73,8 @@ class Nanowire:
     barrier : tuple of two floats
         V_Barrier on the first and on the last site, in meV (S-II.1).
     lead_mu : float
-        Chemical potential of the leads in meV, a convention of the group's published codes. From
-        4ħ²/2m*a² on, the width of their band, nothing conducts.
+        Chemical potential of the leads in meV, a convention of the group's published codes. Beyond
+        their band, which is from 0 to 4ħ²/2m*a², nothing conducts.
     lead_alpha : float or None
         Spin–orbit coupling of the leads in meV nm; None takes the wire's.
     lead_g : float or None
@@ -149,7 +149,7 @@ class Nanowire:
 
     @property
     def hopping(self) -> float:
-        """T = ħ²/2m*a² in meV."""
+        """Hopping t = ħ²/2m*a² in meV."""
         return hopping(self.mass, self.lattice)
 
     @property
@@ -159,7 +159,7 @@ class Nanowire:
 
     @property
     def rotated_hopping(self) -> float:
-        """T' = √(t² + (α/2a)²) in meV: hopping, the spin turning (core/wire/elimination.hpp)."""
+        """Hopping t' = √(t² + (α/2a)²) in meV where the spin turns (core/wire/elimination.hpp)."""
         return float(np.hypot(self.hopping, self.spin_orbit_hopping))
 
     @property
@@ -204,20 +204,21 @@ def gap_in_field(delta0: float, critical_field: float, B: float) -> float:
 
 
 def hopping(mass: float, lattice: float) -> float:
-    """Return T = ħ²/2m*a² in meV, of electron masses and nm."""
+    """Return the hopping t = ħ²/2m*a² in meV, of electron masses and nm."""
     return HBAR2_OVER_2ME / (mass * lattice**2)
 
 
 def check_leads(lead_mu: float, mass: float, lattice: float) -> None:
-    """Require that the leads' band reaches up to their chemical potential.
+    """Require that the leads' chemical potential is within their band.
 
     Raises
     ------
     ArgumentError
-        If it does not: then no mode propagates in them, but for spin splitting, and nothing
-        conducts.
+        If it is not: then no mode propagates in them, but for spin splitting, and nothing conducts.
     """
     width = 4 * hopping(mass, lattice)
-    must = f"be below {width:.3g} meV, the width of the leads' band, for anything to conduct"
-    but = f"it is {lead_mu:g} (a smaller lattice spacing makes the band wider)"
-    require(lead_mu < width, "lead_mu", must, but)
+    must = f"be within the leads' band, from 0 to {width:.3g} meV, for anything to conduct"
+    but = f"it is {lead_mu:g}"
+    if lead_mu >= width:
+        but += " (a smaller lattice spacing makes the band wider)"
+    require(0 < lead_mu < width, "lead_mu", must, but)

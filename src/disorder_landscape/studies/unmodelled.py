@@ -17,6 +17,7 @@ import numpy as np
 
 from disorder_landscape.config import Positive
 from disorder_landscape.dataset.realizations import realization
+from disorder_landscape.inference.defaults import OTHER_BARRIERS
 from disorder_landscape.inference.problem.measurement import (
     Measurement,
     empty_measurement,
@@ -50,8 +51,6 @@ MODEL_ALONE = "model"
 """Of a task: all but the disorder and α is taken as known."""
 STATED = Nanowire.barrier[0]
 """Both barriers of the measurement that is inverted, in meV."""
-OTHER_BARRIERS = (25.0, 10.0)
-"""Of the measurements that check the answer, left and right in meV."""
 
 
 @dataclass(frozen=True, order=True)

@@ -19,10 +19,9 @@ from pydantic import Field
 
 from disorder_landscape.chain import read_test_set
 from disorder_landscape.config import DatasetConfig, Positive
-from disorder_landscape.inference.defaults import WIDEST_SHIFT
+from disorder_landscape.inference.defaults import OTHER_ANGLE, OTHER_BARRIERS, shifts
 from disorder_landscape.inference.verify import verify
 from disorder_landscape.learning.prediction import predict
-from disorder_landscape.model.parameters import Nanowire
 from disorder_landscape.observables.conductance import conductance
 from disorder_landscape.runs import FIVE, SHIPPED, preset_run
 from disorder_landscape.studies.rows import Row, numbers
@@ -34,9 +33,6 @@ B = np.array([0.33, 0.5, 0.69])
 """In T."""
 BIAS = np.array([-0.03, 0.01])
 """In meV."""
-BARRIERS = (25.0, 10.0)
-"""Left and right, in meV; 15 in the training."""
-ANGLE = np.pi / 6
 
 
 @dataclass(frozen=True)
@@ -73,17 +69,17 @@ class VerificationPlan(Plan):
         """
         tests, predictions, config = _predicted()
         test = tests.isel(realization=task.index)
-        wire = Nanowire(test["potential"].to_numpy(), alpha=float(test["alpha"]))
+        wire = config.wire.wire(test["potential"].to_numpy(), float(test["alpha"]))
         measurements = [
-            conductance(replace(wire, barrier=BARRIERS), MU, B, BIAS, config.temperature),
-            conductance(wire, MU[:1], B[1:], BIAS, config.temperature, theta=ANGLE),
+            conductance(replace(wire, barrier=OTHER_BARRIERS), MU, B, BIAS, config.temperature),
+            conductance(wire, MU[:1], B[1:], BIAS, config.temperature, theta=OTHER_ANGLE),
         ]
         result = verify(
             predictions.isel(realization=task.index),
             measurements,
             controls=self.controls,
             config=config,
-            shifts=WIDEST_SHIFT * np.linspace(-1, 1, self.shifts),
+            shifts=shifts(self.shifts),
         )
         score, best_wrong = float(result["score"]), float(result["control_score"].min())
         return [{"index": task.index, "score": score, "best_wrong": best_wrong}]
