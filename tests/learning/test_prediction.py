@@ -108,6 +108,7 @@ def test_the_potential_has_the_mean_that_the_network_predicts():
         (lambda G: G.isel(B=slice(0, 7)), "B"),
         (lambda G: G.assign_coords(mu=2 * G["mu"], bias=G["bias"] / 2), "mu, bias"),
         (lambda G: G.drop_vars("B"), "B"),
+        (lambda G: G.assign_coords(mu=G["mu"].where(G["mu"] > 0)), "mu"),
     ],
 )
 def test_another_grid_is_refused(model, G, change, axes):

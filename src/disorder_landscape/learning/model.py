@@ -108,17 +108,20 @@ def points_of_grid(
         Of the given argument name, if one of the configuration's points is missing.
     """
     grids = {"mu": config.mu, "B": config.B, "bias": np.array(config.bias)}
-    far = {
-        axis: np.abs(axes.get(axis, np.empty(0))[None] - grids[axis][:, None]) > SAME_POINT
-        for axis in AXES
-    }
-    differ = [axis for axis in AXES if far[axis].all(axis=1).any()]
+    nearest, differ = [], []
+    for axis in AXES:
+        off = np.abs(axes.get(axis, np.empty(0))[None] - grids[axis][:, None])
+        off = np.where(off <= SAME_POINT, off, np.inf)
+        if np.isinf(off).all(axis=1).any():
+            differ.append(axis)
+        else:
+            nearest.append(off.argmin(axis=1))
     must = "hold the grid the network was trained on (" + ", ".join(
         f"{axis}: {len(grids[axis])} points from {grids[axis][0]:g} to {grids[axis][-1]:g}"
         for axis in AXES
     )
     require(not differ, name, must + ")", f"it differs in {', '.join(differ)}")
-    return tuple(far[axis].argmin(axis=1) for axis in AXES)
+    return tuple(nearest)
 
 
 def on_grid_of(config: DatasetConfig, G: xr.Dataset, name: str = "G") -> xr.Dataset:
