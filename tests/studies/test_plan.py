@@ -175,6 +175,21 @@ def test_rows_of_other_settings_are_no_rows_of_a_plan(name, old, new, said, shar
     assert {path: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()} == before
 
 
+def test_a_picture_follows_rows_that_a_share_has_left(tmp_path):
+    """… even where the plan says nothing in numbers."""
+    name, place = "temperatures", Place(tmp_path, tmp_path / "build")
+    for ending in (".csv", ".json"):
+        shutil.copy(REPOSITORY / "results" / f"{name}{ending}", tmp_path)
+    picture = tmp_path / f"{name}.png"
+    picture.write_bytes(b"an older one")
+    carry_out(load_study(name), place)
+    assert picture.read_bytes() == b"an older one"
+    for ending in (".csv", ".json"):
+        (tmp_path / f"{name}{ending}").rename(tmp_path / f"{name}.share-1-of-1{ending}")
+    carry_out(load_study(name), place)
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
 def test_the_papers_network_without_noise_is_that_of_the_recipes():
     """… so that it is trained once."""
     keys = {task.key for task in load_study("recipes").tasks}

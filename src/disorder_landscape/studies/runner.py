@@ -46,11 +46,11 @@ def carry_out(study: Study, place: Place, limit: int | None = None) -> Derived:
     if not place.share.is_whole:
         return _carry_out(study, place, limit)
     with kept_from_others(study.table(place).parent, study.name):
-        _gather_shares(study, place)
-        return _carry_out(study, place, limit)
+        has_new = _gather_shares(study, place)
+        return _carry_out(study, place, limit, has_new)
 
 
-def _carry_out(study: Study, place: Place, limit: int | None) -> Derived:
+def _carry_out(study: Study, place: Place, limit: int | None, has_new: bool = False) -> Derived:
     # The first wires of all settings come first.
     missing = sorted(study.missing(place), key=lambda task: getattr(task, "index", 0))
     chosen = missing[:limit]
@@ -64,7 +64,7 @@ def _carry_out(study: Study, place: Place, limit: int | None) -> Derived:
             _complete(study, place, chosen, bar, pace)
     if study.missing(place) or not place.share.is_whole:
         return Derived()
-    return _conclude(study, place, bool(chosen))
+    return _conclude(study, place, has_new or bool(chosen))
 
 
 def _complete(study: Study, place: Place, tasks: Sequence[Any], bar: Any, pace: Pace) -> None:
@@ -92,12 +92,14 @@ def _rows(plan: Plan, place: Place, task: Any) -> list[Row]:
     return [as_text(row) for row in plan.rows(task, place)]
 
 
-def _gather_shares(study: Study, place: Place) -> None:
-    """Take what other runs have left in tables of their shares."""
-    for path in study.tables_of_shares(place):
+def _gather_shares(study: Study, place: Place) -> bool:
+    """Take what other runs have left in tables of their shares; whether there are any."""
+    paths = study.tables_of_shares(place)
+    for path in paths:
         _add(study, place, read_rows(path))
         path.unlink()
         path.with_suffix(".json").unlink(missing_ok=True)
+    return bool(paths)
 
 
 def _add(study: Study, place: Place, new: Iterable[Row]) -> None:
