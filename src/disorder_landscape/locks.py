@@ -6,7 +6,7 @@ import fcntl
 import os
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from disorder_landscape.files import unwritable
@@ -58,6 +58,7 @@ def _locked(path: Path, kind: int) -> int:
             fcntl.flock(handle, kind)
         except OSError:  # no locks on this file system
             return handle
-        if path.exists() and os.path.samestat(os.fstat(handle), path.stat()):
-            return handle
+        with suppress(FileNotFoundError):
+            if os.path.samestat(os.fstat(handle), path.stat()):
+                return handle
         os.close(handle)  # whoever held it has removed the file
