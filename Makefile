@@ -122,7 +122,7 @@ lint: $(READY) ## check style, spelling, types, and that layers look down only
 	.venv/bin/mypy
 	.venv/bin/lint-imports --no-logo --no-cache
 
-lock: $(READY) ## resolve the versions of the requirements*.lock anew, from pyproject.toml
+lock: $(READY) ## write the requirements*.lock from pyproject.toml; versions stay where they still fit it
 	$(COMPILE) --extra dev -o requirements.lock pyproject.toml
 	echo uv | $(COMPILE) -o requirements-uv.lock -
 	echo ziglang | $(COMPILE) -o requirements-zig.lock -

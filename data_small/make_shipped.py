@@ -67,6 +67,8 @@ def write_sums() -> None:
 
 if __name__ == "__main__":
     made = sys.argv[1:] or [*PRESETS, "thirty"]
+    if unknown := set(made) - {*PRESETS, "thirty"}:
+        sys.exit(f"each must be one of {', '.join([*PRESETS, 'thirty'])}, not {unknown.pop()}")
     if "thirty" in made:
         ship_model(open_run(f"configs/{THIRTY}.toml"), shipped_model(THIRTY))
     for preset in (name for name in made if name in PRESETS):

@@ -77,7 +77,7 @@ def figure_script(
     preset : str
         Preset to draw if none is named.
     model : str
-        Which of the paper's two models it shows, as in `chain.preset_run`.
+        Which of the paper's two models it shows, as in `runs.preset_run`.
     """
     script = Path(path).name
     name = "_".join(script.split("_")[:2])
@@ -86,6 +86,8 @@ def figure_script(
         request = Request(preset_run(options.preset, model=model), options.evaluation)
         drawn = data(request)
         command = f"python paper_figures/{script} --preset {options.preset}"
+        if options.evaluation is not None:
+            command += f" --evaluation {options.evaluation}"
         attrs = {**provenance(command), "preset": options.preset}
         write_dataset(drawn, options.output / f"{name}.nc", attrs)
         with paper_style():

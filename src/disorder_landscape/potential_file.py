@@ -59,8 +59,8 @@ def _read_npy(path: Path) -> FloatArray:
 def _read_text(path: Path) -> FloatArray:
     lines = path.read_text("utf-8-sig").splitlines()
     last = {n: line.split(",")[-1].strip() for n, line in enumerate(lines, 1) if line.strip()}
-    if lines and lines[0].startswith(","):
-        del last[1]
+    if lines and lines[0].startswith(","):  # the header of an index without a name
+        _check_unit(last.pop(1))
     values = []
     for number, word in last.items():
         try:
