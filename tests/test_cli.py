@@ -135,7 +135,7 @@ def test_a_potential_is_read_as_spreadsheets_write_it(tmp_path, text):
     assert read_potential(path).tolist() == [0.1, 0.2, 0.3]
 
 
-@pytest.mark.parametrize("header", ["x (nm),V (ueV)", "V [µeV]", "V (V)"])
+@pytest.mark.parametrize("header", ["x (nm),V (ueV)", ",V (eV)", "V [µeV]", "V (V)"])
 def test_a_potential_in_another_unit_is_refused(tmp_path, header):
     (tmp_path / "V.csv").write_text(f"{header}\n1,100\n2,200\n", "utf-8")
     with pytest.raises(ArgumentError, match=r"in meV per site, .* its header says "):
@@ -167,6 +167,11 @@ def test_a_wire_of_another_material_is_an_option_away(monkeypatch, capsys, tmp_p
         ("[dataset]\nrealizations = 3\nspeed = 1\n", "the unknown key dataset.speed"),
         ("[dataset]\nrealizations = -3\n", "dataset.realizations is wrong"),
         ("[dataset]\nrealizations = 3\nbias = []\n", "bias must be a non-empty"),
+        ("[dataset]\nrealizations = 3\n[dataset.wire]\nlead_mu = 60\n", "within the leads' band"),
+        (
+            "[dataset]\nrealizations = 3\n[training]\nrealizations = 2\nnetworks = 2\n",
+            "networks must be 1 where realizations is given",
+        ),
         ("[dataset", "be a TOML file"),
         (None, "be a readable TOML file"),
     ],

@@ -17,10 +17,13 @@ from scipy.constants import physical_constants
 import disorder_landscape as dl
 from command import Request
 from disorder_landscape.arguments import ArgumentError
+from disorder_landscape.config import WireConfig
 from disorder_landscape.model.disorder import cosine_components
 from disorder_landscape.runs import preset_run
 from disorder_landscape.solver.compiled import core
+from disorder_panels import disorder_data
 from plotting import COLUMN, FULL_WIDTH, paper_style
+from wires import simulate_rows
 
 SCRIPTS = {
     "figure_1": "figure_1_network",
@@ -88,7 +91,8 @@ def test_a_script_writes_pdf_png_and_the_arrays(figure, evaluation_file, tmp_pat
     assert written[f"{figure}.png"].startswith(b"\x89PNG")
     stored = xr.load_dataset(tmp_path / f"{figure}.nc", engine="h5netcdf")
     script = f"{SCRIPTS[figure]}.py"
-    assert stored.attrs["command"] == f"python paper_figures/{script} --preset smoke"
+    drawn_from = f"--preset smoke --evaluation {evaluation_file}"
+    assert stored.attrs["command"] == f"python paper_figures/{script} {drawn_from}"
     assert figure in capsys.readouterr().out
 
 
@@ -244,6 +248,22 @@ def test_potentials_are_the_components_plus_barriers(drawn, evaluation, config):
         )
     sites = config.dataset.sites
     np.testing.assert_allclose(data["x"], 0.01 * (np.arange(sites) + 0.5))  # µm
+
+
+def test_wires_are_drawn_with_the_barriers_and_leads_of_their_dataset(evaluation):
+    fixed, chosen = WireConfig(barrier=30.0, lead_mu=20.0), evaluation.isel(realization=[1])
+    simulated = []
+
+    def simulate(wire):
+        simulated.append(wire)
+        return xr.Dataset({"sites": wire.sites})
+
+    simulate_rows(chosen, fixed, simulate)
+    assert [(one.barrier, one.lead_mu) for one in simulated] == 2 * [((30.0, 30.0), 20.0)]
+    drawn = disorder_data(chosen, fixed)
+    ends = drawn["potential"][0, 0, [0, -1]] - chosen["potential"][0, [0, -1]]
+    np.testing.assert_allclose(ends, 30.0)
+    assert drawn.attrs["barrier"] == 30.0
 
 
 def test_alpha_is_drawn_as_predicted_with_its_error(drawn, evaluation):
