@@ -1,7 +1,7 @@
 // What Python sees of the core; solver/_core_baseline.pyi has the same with types.
 //
 // CORE_VARIANT and CORE_MODULE are set by CMakeLists.txt: this file is compiled once per variant.
-// Arrays come from solver/compiled.py, which checks them; here only their shapes are trusted.
+// Shapes are checked here; that numbers are within their ranges is for solver/compiled.py's callers.
 #include <nanobind/stl/complex.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
@@ -114,6 +114,9 @@ nb::tuple thermal(Matrix V, Matrix parameters, Vector mu, Vector B, Vector bias,
 std::pair<Array, Array> conductance_gradient(Matrix V, Matrix parameters, Vector mu, Vector B, Vector omega, Biases biases,
                                              size_t bias_count, LeadSlopesArray slopes, double spin_orbit_slope,
                                              double growth_limit) {
+    require_shapes(V.shape(0) == 1 && biases.shape(0) == omega.size() && slopes.shape(0) == B.size() &&
+                   slopes.shape(1) == omega.size());
+    for (size_t k = 0; k < biases.size(); ++k) require_shapes(biases.data()[k] < std::int64_t(bias_count));
     Wire wire = wires_of(V, parameters).front();
     std::vector<LeadSelfEnergy> of_leads = lead_self_energies_of(slopes.data(), slopes.size());
     GradientGrid grid{wire,          mu.data(),         B.data(),        omega.data(),    int(mu.size()),  int(B.size()),
@@ -127,6 +130,7 @@ std::pair<Array, Array> conductance_gradient(Matrix V, Matrix parameters, Vector
 // Of the one wire that there is; slopes are as LeadSelfEnergy, (B, energy, 2) of them.
 nb::tuple thermal_conductance_gradient(Matrix V, Matrix parameters, Vector mu, Vector B, Vector bias, double kT, Vector energies,
                                        LeadSlopesArray slopes, double spin_orbit_slope, double tolerance, double growth_limit) {
+    require_shapes(V.shape(0) == 1 && energies.size() == 4 && slopes.shape(0) == B.size() && slopes.shape(1) == 4);
     std::vector<LeadSelfEnergy> of_leads = lead_self_energies_of(slopes.data(), slopes.size());
     std::vector<size_t> sets{mu.size(), B.size()};
     Array error = new_array(sets), solved = new_array(sets), gradient_error = new_array(sets);
@@ -142,6 +146,7 @@ nb::tuple thermal_conductance_gradient(Matrix V, Matrix parameters, Vector mu, V
 }
 
 ComplexArray ends_of_isolated(Matrix V, Matrix parameters, Vector mu, Vector B, Vector x, Vector y, double theta) {
+    require_shapes(y.size() == x.size());
     return on_grid<Amplitude>(V, parameters, mu, B, x, theta, {V.shape(0), B.size(), mu.size(), x.size(), 8, 8},
                               [&](const Grid& grid, Amplitude* out, Stop& stop) {
                                   isolated_ends(grid, y.data(), out, stop);
@@ -156,6 +161,7 @@ Array levels_of(Matrix V, Matrix parameters, Vector mu, Vector B, int count, dou
 // Of the one wire that there is; leads are as LeadSelfEnergy, (B, z) of them.
 std::pair<ComplexArray, Array> green_of_sites(Matrix V, Matrix parameters, Vector mu, Vector B, Vector x, Vector y,
                                               LeadArray leads, double theta) {
+    require_shapes(V.shape(0) == 1 && y.size() == x.size() && leads.shape(0) == B.size() && leads.shape(1) == x.size());
     Array growth = new_array({mu.size(), B.size(), x.size()});
     std::vector<LeadSelfEnergy> of_leads = lead_self_energies_of(leads.data(), leads.size());
     auto G = on_grid<Amplitude>(V, parameters, mu, B, x, theta, {mu.size(), B.size(), x.size(), V.shape(1), 2},
@@ -167,7 +173,8 @@ std::pair<ComplexArray, Array> green_of_sites(Matrix V, Matrix parameters, Vecto
 
 // Of the first wire, shape (energy, lead, charge, 2, 2), in meV.
 ComplexArray lead_self_energies(Matrix V, Matrix parameters, double B, Vector omega, double theta) {
-    Wire wire = wires_of(V, parameters)[0];
+    require_shapes(V.shape(0) > 0);
+    Wire wire = wires_of(V, parameters).front();
     auto out = new_array<Amplitude>({omega.size(), 2, 2, 2, 2});
     for (size_t e = 0; e < omega.size(); ++e) {
         double w = omega.data()[e];
@@ -201,6 +208,7 @@ Array interpolation_weights(Vector u, int nodes) {
 // (set, pole) and (set, pole, 4), filled up by poles of no residue; a residue that is NaN where there is no model.
 std::pair<ComplexArray, ComplexArray> poles_of_tilted(ArrayIn<Amplitude, 1> z, ArrayIn<Amplitude, 4> F, ArrayIn<Amplitude, 2> sigma,
                                                       ArrayIn<Amplitude, 2> slope, double hop, double window) {
+    require_shapes(F.shape(1) == z.size() && F.shape(2) == 8 && F.shape(3) == 8 && sigma.size() == 64 && slope.size() == 64);
     EndSquare at_zero, by_energy;
     take_ends(sigma.data(), at_zero), take_ends(slope.data(), by_energy);
     const TiltedLeads leads(at_zero, by_energy);

@@ -36,6 +36,10 @@ inline std::vector<Wire> wires_of(const Matrix& V, const Matrix& parameters) {
     return wires_of(int(V.shape(0)), int(V.shape(1)), V.data(), parameters.data());
 }
 
+inline void require_shapes(bool fit) {
+    if (!fit) throw nb::value_error("the shapes of these arrays do not fit together");
+}
+
 inline void take_ends(const Amplitude* from, EndSquare& to) {
     for (int k = 0; k < 64; ++k) to[k / 8][k % 8] = {from[k].real(), from[k].imag()};
     to_majorana(to);

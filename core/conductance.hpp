@@ -85,7 +85,7 @@ struct ComplexArithmetic {
     static ComplexTerms one(double kinetic, const Pairing& p, double hop) {
         return {kinetic, Amplitude(p.normal.re, p.normal.im) / hop, Amplitude(p.anomalous.re, p.anomalous.im) / hop};
     }
-    static void set_kinetic(Terms<N>& t, int lane, double value) { t.kinetic.re.set(lane, value), t.kinetic.im.set(lane, 0.0); }
+    static void set_kinetic(Terms<N>& t, int lane, double value) { set_lane(t.kinetic, lane, value); }
     template <class Ends, class Leads>
     static Conductances<R> conductances(const Ends& G, const Leads& leads) { return lossy_conductances_of_ends<R>(G, leads); }
 };
@@ -93,7 +93,7 @@ struct ComplexArithmetic {
 template <class Ends>
 inline void set_ends(Ends& G, int lane, const EndMatrix& one) {
     for (int i = 0; i < 8; ++i)
-        for (int j = Ends::SYMMETRIC ? i : 0; j < 8; ++j) G(i, j).re.set(lane, one(i, j).real()), G(i, j).im.set(lane, one(i, j).imag());
+        for (int j = Ends::SYMMETRIC ? i : 0; j < 8; ++j) set_lane(G(i, j), lane, one(i, j));
 }
 
 // In each lane a number only if all of G is: where leads are closed, a level of the whole at ω makes it none.

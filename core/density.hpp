@@ -78,7 +78,7 @@ inline void local_green(const Grid& grid, const double* y, const LeadSelfEnergy*
                 size_t at = size_t(task) * energies + first + l;
                 growth[at] = grown[l];
                 for (int k = 0; k < 2 * wire.sites; ++k)
-                    out[at * 2 * wire.sites + k] = Amplitude(of_sites[k].re[l], of_sites[k].im[l]) / hop;
+                    out[at * 2 * wire.sites + k] = of_lane(of_sites[k], l) / hop;
             }
         }
     });

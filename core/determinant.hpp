@@ -6,7 +6,7 @@
 
 namespace core {
 
-// The determinant of a 4×4 matrix by Gauss's elimination with column pivoting, one lane.
+// The determinant of a 4×4 matrix by Gauss's elimination with partial pivoting, one lane.
 inline Amplitude determinant(Amplitude (&M)[4][4]) {
     Amplitude product = 1.0;
     for (int k = 0; k < 4; ++k) {
@@ -25,9 +25,6 @@ inline Amplitude determinant(Amplitude (&M)[4][4]) {
     }
     return product;
 }
-
-template <class R> inline Amplitude of_lane(R x, int lane) { return x[lane]; }
-template <class R> inline Amplitude of_lane(Complex<R> x, int lane) { return {x.re[lane], x.im[lane]}; }
 
 template <class Ends, class Leads>
 inline double reflection_determinant(const Ends& G, const Leads& leads, int lead, int lane) {

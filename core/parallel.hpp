@@ -6,6 +6,9 @@
 #include <vector>
 
 #if !defined(__wasm__)
+#include <exception>
+#include <mutex>
+#include <system_error>
 #include <thread>
 #endif
 
@@ -29,13 +32,27 @@ inline void in_threads(int, Work& work) { work(); }
 #else
 inline int processors() { return int(std::max(1u, std::thread::hardware_concurrency())); }
 
-// The caller is one of the threads.
+// The caller is one of the threads.  Where the system grants fewer, these do all; what one of them throws, the caller does.
 template <class Work>
 inline void in_threads(int count, Work& work) {
+    std::mutex mutex;
+    std::exception_ptr failed;
+    auto guarded = [&] {
+        try {
+            work();
+        } catch (...) {
+            std::lock_guard lock(mutex);
+            if (!failed) failed = std::current_exception();
+        }
+    };
     std::vector<std::thread> helpers;
-    for (int i = 1; i < count; ++i) helpers.emplace_back([&] { work(); });
-    work();
+    try {
+        for (int i = 1; i < count; ++i) helpers.emplace_back(guarded);
+    } catch (const std::system_error&) {
+    }
+    guarded();
     for (auto& helper : helpers) helper.join();
+    if (failed) std::rethrow_exception(failed);
 }
 #endif
 

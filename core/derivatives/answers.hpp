@@ -33,15 +33,15 @@ struct LeadsAt {
     void set(int lane, const ContourPoint& at, const ContinuedLead& leads, const ContinuedLead (&slopes)[LEAD_CHANGES]) {
         for (int c = 0; c < CHANNELS; ++c)
             for (int e = 0; e < 3; ++e) {
-                Batch::set(sigma.of[c][e], lane, leads.sigma(at.z, c, e)), Batch::set(gamma[c][e], lane, leads.gamma(at.z, c, e));
+                set_lane(sigma.of[c][e], lane, leads.sigma(at.z, c, e)), set_lane(gamma[c][e], lane, leads.gamma(at.z, c, e));
                 for (int by = 0; by < LEAD_CHANGES; ++by) {
-                    Batch::set(slope[by][c][e], lane, slopes[by].sigma(at.z, c, e));
-                    Batch::set(gamma_slope[by][c][e], lane, slopes[by].gamma(at.z, c, e));
+                    set_lane(slope[by][c][e], lane, slopes[by].sigma(at.z, c, e));
+                    set_lane(gamma_slope[by][c][e], lane, slopes[by].gamma(at.z, c, e));
                 }
             }
         for (int i = 0; i < 8; ++i)
-            for (int j = 0; j < 8; ++j) Batch::set(conjugate[i][j], lane, at.conjugate(i, j));
-        for (int i = 0; i < 8; ++i) Batch::set(v[i], lane, at.v[i]);
+            for (int j = 0; j < 8; ++j) set_lane(conjugate[i][j], lane, at.conjugate(i, j));
+        for (int i = 0; i < 8; ++i) set_lane(v[i], lane, at.v[i]);
     }
 };
 

@@ -81,12 +81,12 @@ inline EndMatrix from_chiral(const EndMatrix& M) {
 inline EndMatrix lane_at_sites(const Symmetric8<PoleComplex>& G, int lane, double hop) {
     EndMatrix one;
     for (int k = 0; k < 8; ++k)
-        for (int j = 0; j < 8; ++j) one(k, j) = hop * Batch::get(G(k, j), lane);
+        for (int j = 0; j < 8; ++j) one(k, j) = hop * of_lane(G(k, j), lane);
     return from_chiral(one);
 }
 
 // How far from pole p the next of those in order, or the mirror image of one, is; zero if one is equal.
-inline double isolation(const Resonances& of, int p) {
+inline double separation(const Resonances& of, int p) {
     const Amplitude z = of.poles[p].z;
     double nearest = std::abs(z.real()) > CENTRAL ? 2 * z.real() : INFINITY;
     for (int k : of.order)
@@ -134,7 +134,7 @@ inline std::vector<ContourPoint> contour(const Path& path, double hop, const Res
     // Call use(k, G at the k-th energy) for so many energies.
     auto for_green = [&](int count, const Cubic& inverse, auto energy, auto use) {
         for (int first = 0; first < count; first += POLES) {
-            for (int l = 0; l < POLES; ++l) Batch::set(b.z, l, energy(std::min(first + l, count - 1)));
+            for (int l = 0; l < POLES; ++l) set_lane(b.z, l, energy(std::min(first + l, count - 1)));
             auto G = dressed_green(inverse, b);
             for (int l = 0; l < POLES && first + l < count; ++l) use(first + l, detail::lane_at_sites(G, l, hop));
         }
@@ -144,7 +144,7 @@ inline std::vector<ContourPoint> contour(const Path& path, double hop, const Res
     for_green(int(seen.size()), leads.inverse, above, [&](int k, const EndMatrix& G) {
         points.push_back(detail::point_of_pole(pole(k), G, path, leads, hop, broadening));
         points.back().mirrored = seen[k] < poles.paired;
-        points.back().isolation = detail::isolation(poles, poles.order[seen[k]]);
+        points.back().isolation = detail::separation(poles, poles.order[seen[k]]);
         points.back().leave_out_if_narrow(width);
     });
     auto add = [&](ContourPoint::Kind kind, const Path::Point& of, const EndMatrix& G) { points.push_back({kind, of.z, of.weight, true, G}); };

@@ -97,7 +97,7 @@ inline void find_exact_poles(const GradientField& field, const Path& path, doubl
         if (!done[l]) points[l].weight = 0.0;  // unless it is found
     C y[8];
     for (int l = 0; l < REGISTER; ++l)
-        for (int i = 0; i < 8; ++i) Batch::set(y[i], l, points[std::min(l, count - 1)].y[i]);
+        for (int i = 0; i < 8; ++i) set_lane(y[i], l, points[std::min(l, count - 1)].y[i]);
     Vectors vectors(room.sites, y);
     for (int step = 0; step < STEPS_TO_POLE && std::count(done.begin(), done.end(), false) > 0; ++step) {
         for (ContourPoint& point : now) point.z = point.pole;
@@ -110,11 +110,11 @@ inline void find_exact_poles(const GradientField& field, const Path& path, doubl
         for (int l = 0; l < count; ++l) {
             if (done[l]) continue;
             ContourPoint& point = now[l];
-            Amplitude shift = Batch::get(top, l) / Batch::get(slope, l), root = std::sqrt(Batch::get(slope, l)), to = point.z - shift;
+            Amplitude shift = of_lane(top, l) / of_lane(slope, l), root = std::sqrt(of_lane(slope, l)), to = point.z - shift;
             done[l] = !(std::abs(to - points[l].pole) < MOST_OF_WAY * path.step) || !(to.imag() < 0);  // lost
             if (done[l]) continue;
             point.pole = to;
-            for (int i = 0; i < 8; ++i) point.v[i] = std::conj(Batch::get(ends[i], l) / root);
+            for (int i = 0; i < 8; ++i) point.v[i] = std::conj(of_lane(ends[i], l) / root);
             point.set_residue();
             done[l] = std::abs(shift) < LAST_STEP * std::min(-to.imag(), point.isolation);
             if (done[l]) {

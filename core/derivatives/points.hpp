@@ -30,7 +30,7 @@ inline void find_conjugates(const GradientField& field, double mu, ContourPoint*
     const auto G = attach_leads(eliminate_inner_sites<C, Symmetric4<C>>(view(field.wire), at.terms), at.leads.sigma);
     for (int l = 0; l < count; ++l)
         for (int i = 0; i < 8; ++i)
-            for (int j = 0; j < 8; ++j) points[l].conjugate(i, j) = std::conj(Batch::get(G(i, j), l));
+            for (int j = 0; j < 8; ++j) points[l].conjugate(i, j) = std::conj(of_lane(G(i, j), l));
 }
 
 // Up to REGISTER points of one set: what they add to the derivatives of COUNT probabilities.
@@ -74,12 +74,12 @@ public:
         const EnergyPlan& plan = averages.plan;
         for (int l = 0; l < count; ++l) {
             const ContourPoint& point = points[l];
-            Batch::set(of_all, l, averages.all.at(point.z)), Batch::set(of_levels, l, averages.levels.at(point.z));
-            Batch::set(energy, l, point.z);
+            set_lane(of_all, l, averages.all.at(point.z)), set_lane(of_levels, l, averages.levels.at(point.z));
+            set_lane(energy, l, point.z);
             Amplitude mirrored = point.mirrored ? point.weight : 0.0;
             for (int v = 0; v < plan.biases; ++v) {
-                Batch::set(kernel[v].plus, l, point.weight * thermal_kernel(point.z, plan.bias[v], plan.kT));
-                Batch::set(kernel[v].minus, l, mirrored * thermal_kernel(point.z, -plan.bias[v], plan.kT));
+                set_lane(kernel[v].plus, l, point.weight * thermal_kernel(point.z, plan.bias[v], plan.kT));
+                set_lane(kernel[v].minus, l, mirrored * thermal_kernel(point.z, -plan.bias[v], plan.kT));
             }
         }
     }
@@ -161,8 +161,8 @@ private:
             Amplitude over = 1.0;
             for (int i = 0; i < 8; ++i)
                 for (int j = 0; j < 8; ++j)
-                    over += point.scale * point.y[i] * (Batch::get(G(i, j), l) - point.own(i, j)) * point.y[j];
-            Batch::set(scale, l, 1.0 / over);
+                    over += point.scale * point.y[i] * (of_lane(G(i, j), l) - point.own(i, j)) * point.y[j];
+            set_lane(scale, l, 1.0 / over);
             set_ends(G, l, point.own);
         }
         return scale;
@@ -172,7 +172,7 @@ private:
     void conjugate_on_axis(const Ends<R>& G) {
         for (int l = 0; l < count; ++l)
             for (int k = 0; k < 64 && points[l].kind == ContourPoint::ON_AXIS; ++k)
-                Batch::set(at.leads.conjugate[k / 8][k % 8], l, std::conj(Batch::get(G(k / 8, k % 8), l)));
+                set_lane(at.leads.conjugate[k / 8][k % 8], l, std::conj(of_lane(G(k / 8, k % 8), l)));
     }
 
     // All but what the derivatives by V say.

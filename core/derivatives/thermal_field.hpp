@@ -73,11 +73,11 @@ struct PointLanes {
         for (int l = 0; l < REGISTER; ++l) {
             const ContourPoint& at = points[std::min(l, count - 1)];
             PairingChanges pairing(field.of, at.z + Amplitude(0, field.of.dissipation));
-            Batch::set(terms.kinetic, l, (2 * field.of.hopping - mu) / field.hop);
-            Batch::set(terms.normal, l, pairing.normal / field.hop), Batch::set(terms.anomalous, l, pairing.anomalous / field.hop);
+            set_lane(terms.kinetic, l, (2 * field.of.hopping - mu) / field.hop);
+            set_lane(terms.normal, l, pairing.normal / field.hop), set_lane(terms.anomalous, l, pairing.anomalous / field.hop);
             for (int k = 0; k < 2; ++k) {
-                Batch::set(by_gamma[k], l, pairing.by_gamma[k] / field.hop);
-                Batch::set(by_energy[k], l, pairing.by_energy[k] / field.hop);
+                set_lane(by_gamma[k], l, pairing.by_gamma[k] / field.hop);
+                set_lane(by_energy[k], l, pairing.by_energy[k] / field.hop);
             }
             leads.set(l, at, field.leads, field.slopes);
         }

@@ -23,11 +23,7 @@ struct LaneLeads {
 
     void set(int lane, const LeadSelfEnergy& sigma) {
         for (int c = 0; c < CHANNELS; ++c)
-            for (int k = 0; k < 3; ++k) {
-                Amplitude value = sigma.of[c](k / 2, (k + 1) / 2);
-                of[c][k].re.set(lane, value.real());
-                of[c][k].im.set(lane, value.imag());
-            }
+            for (int k = 0; k < 3; ++k) set_lane(of[c][k], lane, sigma.of[c](k / 2, (k + 1) / 2));
     }
     CORE_INLINE R gamma(int c, int i, int j) const { return -2.0 * of[c][i + j].im; }
 };
@@ -39,11 +35,7 @@ struct TiltedLaneLeads {
 
     void set(int lane, const LeadSelfEnergy& sigma) {
         for (int c = 0; c < CHANNELS; ++c)
-            for (int k = 0; k < 4; ++k) {
-                Amplitude value = sigma.of[c](k / 2, k % 2);
-                of[c][k / 2][k % 2].re.set(lane, value.real());
-                of[c][k / 2][k % 2].im.set(lane, value.imag());
-            }
+            for (int k = 0; k < 4; ++k) set_lane(of[c][k / 2][k % 2], lane, sigma.of[c](k / 2, k % 2));
     }
     CORE_INLINE Complex<R> gamma(int c, int i, int j) const {
         Complex<R> one = of[c][i][j], other = of[c][j][i];

@@ -37,8 +37,7 @@ inline std::vector<int> first_numbers(size_t count) {
 inline PoleComplex load(const std::vector<Zero>& zeros, const std::vector<int>& which, size_t first) {
     PoleComplex z;
     for (int l = 0; l < POLES; ++l) {
-        Amplitude at = zeros[which[std::min(first + l, which.size() - 1)]].z;
-        z.re.set(l, at.real()), z.im.set(l, at.imag());
+        set_lane(z, l, zeros[which[std::min(first + l, which.size() - 1)]].z);
     }
     return z;
 }

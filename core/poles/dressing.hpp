@@ -79,7 +79,7 @@ struct Cubic {
     }
 };
 
-// Invert an n×n matrix in place by Gauss–Jordan elimination with row pivoting.
+// Invert an n×n matrix in place by Gauss–Jordan elimination with partial pivoting.
 template <int n>
 inline void invert(Amplitude (&M)[n][n]) {
     int order[n];

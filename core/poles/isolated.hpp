@@ -10,7 +10,7 @@
 
 namespace core {
 
-// The inverse of a symmetric matrix by Gauss–Jordan elimination with row pivoting of [M | 1].
+// The inverse of a symmetric matrix by Gauss–Jordan elimination of [M | 1] with partial pivoting.
 template <class R>
 inline Symmetric8<R> pivoted_inverse(const Symmetric8<R>& M) {
     R a[8][16];

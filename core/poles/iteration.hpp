@@ -80,14 +80,14 @@ public:
         for (auto& entry : t) entry = entry * size;
         for (int n = 0, half = levels.size(); n < half; ++n) {
             auto [up, down] = answer(n);
-            for (int l = 0; l < count; ++l) vectors.set(first + l, n, get(up, l)), vectors.set(first + l, half + n, get(down, l));
+            for (int l = 0; l < count; ++l) vectors.set(first + l, n, of_lane(up, l)), vectors.set(first + l, half + n, of_lane(down, l));
         }
     }
 
     // What a pole's residue needs.
     void load(int lane, const Pole& pole) {
-        set(z, lane, pole.z), set(norm, lane, pole.norm);
-        for (int i = 0; i < 8; ++i) set(t[i], lane, pole.t[i]);
+        set_lane(z, lane, pole.z), set_lane(norm, lane, pole.norm);
+        for (int i = 0; i < 8; ++i) set_lane(t[i], lane, pole.t[i]);
     }
 
     // Take `steps` steps with some of the poles; write how far each was off before the last one.
@@ -101,7 +101,7 @@ public:
             int p = which[std::min(l, count - 1)];
             load(l, poles[p]);
             if (!whole)
-                for (int k = 0; k < 2 * levels.size(); ++k) set(x[k], l, vectors.get(p, k));
+                for (int k = 0; k < 2 * levels.size(); ++k) set_lane(x[k], l, vectors.get(p, k));
         }
         scale = 1.0;
         for (int step = 0; step < steps; ++step) improve(leads);
@@ -116,19 +116,13 @@ public:
         norm = norm * PoleReal(scale * scale);
         for (int l = 0; l < count; ++l) {
             Pole& pole = poles[which[l]];
-            pole.z = get(z, l), pole.norm = get(norm, l);
-            for (int i = 0; i < 8; ++i) pole.t[i] = get(t[i], l);
+            pole.z = of_lane(z, l), pole.norm = of_lane(norm, l);
+            for (int i = 0; i < 8; ++i) pole.t[i] = of_lane(t[i], l);
             if (!whole)
-                for (int k = 0; k < 2 * levels.size(); ++k) vectors.set(which[l], k, get(x[k], l));
+                for (int k = 0; k < 2 * levels.size(); ++k) vectors.set(which[l], k, of_lane(x[k], l));
             off[l] = before[l];
         }
     }
-
-    static void set(PoleComplex& x, int lane, Amplitude value) {
-        x.re.set(lane, value.real());
-        x.im.set(lane, value.imag());
-    }
-    static Amplitude get(const PoleComplex& x, int lane) { return {x.re[lane], x.im[lane]}; }
 
 private:
     // Improve the poles and their vectors by one step.

@@ -33,11 +33,11 @@ public:
     PoleComplex* block(int b) { return &entries[size_t(b) * length]; }
     Amplitude get(int pole, int k) const {
         const PoleComplex& of = entries[size_t(pole / POLES) * length + k];
-        return {of.re[pole % POLES], of.im[pole % POLES]};
+        return of_lane(of, pole % POLES);
     }
     void set(int pole, int k, Amplitude value) {
         PoleComplex& of = entries[size_t(pole / POLES) * length + k];
-        of.re.set(pole % POLES, value.real()), of.im.set(pole % POLES, value.imag());
+        set_lane(of, pole % POLES, value);
     }
 };
 

@@ -53,7 +53,7 @@ inline std::vector<Zero> starts(const std::vector<TiltedLevel>& levels, int near
             for (int b = 0; b < 2; ++b) form[0][b] = form[0][b] + conj(w[i]) * right[b], form[1][b] = form[1][b] + w[i] * right[b];
         }
         for (int l = 0; l < POLES && first + l < near; ++l) {
-            auto of = [&](int a, int b) { return Amplitude(form[a][b].re[l], form[a][b].im[l]); };
+            auto of = [&](int a, int b) { return of_lane(form[a][b], l); };
             double E = levels[first + l].E;
             auto below = [](Amplitude start) { return Amplitude(start.real(), std::min(start.imag(), -AXIS)); };
             if (E > LOW_LEVEL * std::abs(of(0, 0))) {
@@ -130,7 +130,7 @@ inline bool tilted_poles(std::vector<TiltedLevel> levels, const TiltedLeads& lea
             const Zero& zero = zeros[first + l];
             TiltedPole pole{zero.z, {}}, image{-std::conj(zero.z), {}};
             for (int k = 0; k < 4; ++k) {
-                pole.residue[k] = {r.at[0][k].re[l], r.at[0][k].im[l]};
+                pole.residue[k] = of_lane(r.at[0][k], l);
                 image.residue[k] = {-r.at[1][k].re[l], r.at[1][k].im[l]};
             }
             out.push_back(pole);

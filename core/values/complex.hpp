@@ -52,6 +52,14 @@ template <class R> CORE_INLINE Complex<R> multiply_subtract(Complex<R> a, R b, C
 template <class R> CORE_INLINE Product<Complex<R>, R> operator*(Complex<R> a, R b) { return {a, b}; }
 template <class R> CORE_INLINE Product<Complex<R>, R> operator*(R b, Complex<R> a) { return {a, b}; }
 
+// One lane as a number of its own.
+template <class R> inline std::complex<double> of_lane(R x, int lane) { return x[lane]; }
+template <class R> inline std::complex<double> of_lane(Complex<R> x, int lane) { return {x.re[lane], x.im[lane]}; }
+template <class R> inline void set_lane(Complex<R>& x, int lane, std::complex<double> value) {
+    x.re.set(lane, value.real());
+    x.im.set(lane, value.imag());
+}
+
 template <class R> CORE_INLINE Complex<R> conj(Complex<R> a) { return {a.re, -a.im}; }
 template <class R> CORE_INLINE R square(Complex<R> a) { return multiply_add(a.im, a.im, multiply(a.re, a.re)); }
 template <class R> CORE_INLINE Complex<R> inverse(Complex<R> a) {

@@ -45,3 +45,29 @@ def test_every_process_gets_the_same_bits():
     first = output_of("print(conductances(0.0), conductances(0.05))")
     second = output_of("warm = conductances(0.05); print(conductances(0.0), warm)")
     assert first == second
+
+
+def test_threads_are_as_many_as_the_cores_that_a_process_may_use():
+    """Under `taskset`, say, or where Slurm has given it one of a shared node."""
+    one_core = "import os; os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})\n"
+    ask = "from disorder_landscape.solver.compiled import core; print(core.set_threads(1))"
+    command = [sys.executable, "-c", one_core + ask]
+    env = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
+    assert subprocess.run(command, env=env, capture_output=True, check=True).stdout == b"1\n"
+
+
+FEW_THREADS = """
+import resource
+from disorder_landscape.solver.compiled import core
+
+alone = core.set_threads(1) and conductances(0.05)
+core.set_threads(10_000)
+used = resource.getpagesize() * int(open("/proc/self/statm").read().split()[0])
+resource.setrlimit(resource.RLIMIT_AS, (used + 2**28, resource.RLIM_INFINITY))
+print(alone == conductances(0.05))
+"""
+
+
+def test_where_there_are_fewer_threads_than_asked_for_these_do_all():
+    """Each has a stack of some megabytes: 96 are more than 256 MB allow."""
+    assert output_of(FEW_THREADS) == "True\n"

@@ -7,9 +7,12 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from threadpoolctl import threadpool_limits
+
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.executors.executor import Result, Task
 from disorder_landscape.parts import needs
+from disorder_landscape.solver.compiled import threads_at_work
 
 ANSWERS_WITHIN = 30
 """Seconds in which the scheduler must answer."""
@@ -71,11 +74,16 @@ class DaskCluster:
 
 
 def _by_itself(function: Callable[[Task], Result], task: Task) -> Result:
-    """Carry a task out on a worker as anywhere else.
+    """Carry a task out on a worker as anywhere else, in one thread.
 
-    Otherwise xarray, which notices where it is, asks the scheduler for a lock on every file.
+    Otherwise each of the workers, of which there is one for each core, takes all cores; and xarray,
+    which notices where it is, asks the scheduler for a lock on every file.
     """
     import dask
 
-    with dask.config.set(scheduler="synchronous"):
+    with (
+        dask.config.set(scheduler="synchronous"),
+        threads_at_work(1),
+        threadpool_limits(1, user_api="blas"),
+    ):
         return function(task)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from disorder_landscape.machine import cores
 from disorder_landscape.model.hamiltonian import ComplexArray
 from disorder_landscape.model.parameters import BOLTZMANN, FloatArray, Nanowire
 from disorder_landscape.solver.variants import chosen, variant
@@ -36,7 +37,7 @@ __all__ = [
 
 if not TYPE_CHECKING:
     core = variant(chosen())
-
+core.set_threads(cores())
 
 GROWTH_LIMIT: float = core.GROWTH_LIMIT
 """Largest inverse pivot, or product of couplings, (in units of t') up to which elimination without
