@@ -133,7 +133,7 @@ nb::tuple thermal_conductance_gradient(Matrix V, Matrix parameters, Vector mu, V
     require_shapes(V.shape(0) == 1 && energies.size() == 4 && slopes.shape(0) == B.size() && slopes.shape(1) == 4);
     std::vector<LeadSelfEnergy> of_leads = lead_self_energies_of(slopes.data(), slopes.size());
     std::vector<size_t> sets{mu.size(), B.size()};
-    Array error = new_array(sets), solved = new_array(sets), gradient_error = new_array(sets);
+    Array error = new_array(sets), solved = new_array(sets), gradient_error = new_array({mu.size(), B.size(), 2});
     Array by_V = new_array({mu.size(), B.size(), bias.size(), 4, V.shape(1)});
     Array others = new_array({mu.size(), B.size(), bias.size(), 4, CHANGES});
     Array G = on_grid(V, parameters, mu, B, bias, 0.0, {mu.size(), B.size(), bias.size(), 4},

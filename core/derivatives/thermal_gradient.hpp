@@ -45,6 +45,7 @@ private:
 // √(Δ₀ ± V_Z) times as many for a unit of τ.
 struct LevelsAtGap {
     double by_gamma, by_delta0, by_zeeman;
+    double most_by_delta0;  // of the levels of one spin, with Δ₀ or V_Z; zero where there are those of one spin only
 
     explicit LevelsAtGap(const detail::GradientField& field) : by_gamma(1 / std::max(field.of.gamma, LEAST_GAMMA * field.of.delta0)) {
         const double V_Z = field.hop * field.zeeman, most = std::sqrt(field.of.delta0 + std::abs(V_Z));
@@ -52,6 +53,7 @@ struct LevelsAtGap {
         if (least > FEWEST * most) by_delta0 = 1 / (most * least), by_zeeman = (1 / most - 1 / least) / (most + least);
         else by_delta0 = by_zeeman = 1 / (most * most);
         if (V_Z < 0) by_zeeman = -by_zeeman;
+        most_by_delta0 = least > 0 ? 1 / std::pow(std::max(least, FEWEST * most), 2) : 0.0;
     }
 
 private:
@@ -59,8 +61,14 @@ private:
     static constexpr double LEAST_GAMMA = 0.5;  // so much less than Δ₀ at most, or the closed form's own error is made too large
 };
 
-// Fill out the derivatives of one set, and return how far apart the two of a shift are, in e²/h per kT.
-inline double gradient_of_set(const detail::GradientField& field, const GradientRules& rules, const RationalConductances& model, double mu,
+// How wrong the derivatives of one set may be, in e²/h per kT.
+struct GradientErrors {
+    double shift = 0.0;  // how far apart the two of a shift are
+    double at_gap = 0.0;  // of those by Δ₀ and V_Z: by how much the levels of one spin next to the gap may differ from the mean
+};
+
+// Fill out the derivatives of one set.
+inline GradientErrors gradient_of_set(const detail::GradientField& field, const GradientRules& rules, const RationalConductances& model, double mu,
                               std::vector<ContourPoint> points, double* by_V, double* others) {
     using namespace detail;
     static thread_local GradientRoom room;
@@ -103,7 +111,7 @@ inline double gradient_of_set(const detail::GradientField& field, const Gradient
         for (size_t v = 0; v < values; ++v) missed[v] -= total(room.others[OF_LEVELS * values + v]);
     }
     const LevelsAtGap levels(field);
-    double error = 0.0;
+    GradientErrors error;
     for (size_t v = 0; v < values; ++v) {
         double* to = others + v * CHANGES;
         to[BY_BIAS] = by_bias[v], to[BY_KT] = by_kT[v];
@@ -116,7 +124,8 @@ inline double gradient_of_set(const detail::GradientField& field, const Gradient
         double scaled = to[BY_DELTA0] - field.of.dissipation * to[BY_DISSIPATION];
         to[BY_DELTA0] = (scaled - plan.bias[v / 4] * to[BY_BIAS] - plan.kT * to[BY_KT]) / field.of.delta0;
         to[BY_GAMMA] += levels.by_gamma * missed[v], to[BY_DELTA0] += levels.by_delta0 * missed[v], to[BY_ZEEMAN] += levels.by_zeeman * missed[v];
-        error = largest(error, plan.kT * std::abs(to[BY_ENERGY] - of_all[v]));
+        error.shift = largest(error.shift, plan.kT * std::abs(to[BY_ENERGY] - of_all[v]));
+        error.at_gap = largest(error.at_gap, plan.kT * levels.most_by_delta0 * std::abs(missed[v]));
     }
     return error;
 }
@@ -124,8 +133,8 @@ inline double gradient_of_set(const detail::GradientField& field, const Gradient
 // Where nodes go up to the gap, derivatives need averages that are better by so much.
 constexpr double TOLERANCE_TO_GAP = 0.4;
 
-// Fill G and error as thermal_conductance does, the derivatives, and their errors, shape (mu, B): infinite, and the
-// derivatives NaN, where a set has no model.
+// Fill G and error as thermal_conductance does, the derivatives, and their errors, shape (mu, B, 2) as GradientErrors: infinite,
+// and the derivatives NaN, where a set has no model.
 inline void thermal_gradient(const ThermalGradientGrid& at, double tolerance, double growth_limit, double* G, double* error,
                              double* energies, ThermalGradientArrays out, double* gradient_error, Stop& stop) {
     const Grid& grid = at.grid;
@@ -152,7 +161,7 @@ inline void thermal_gradient(const ThermalGradientGrid& at, double tolerance, do
         double *by_V = out.by_V + set * values * wire.sites, *others = out.others + set * values * CHANGES;
         if (models[set].nodes == 0) {
             std::fill_n(by_V, values * wire.sites, NAN), std::fill_n(others, values * CHANGES, NAN);
-            gradient_error[set] = INFINITY;
+            gradient_error[2 * set] = gradient_error[2 * set + 1] = INFINITY;
             return;
         }
         int f = set % grid.B_count;
@@ -161,7 +170,8 @@ inline void thermal_gradient(const ThermalGradientGrid& at, double tolerance, do
         Levels levels(model.levels, of.averages.plan.window);
         Batch batch(levels);
         auto points = contour(of.path, wire.rotated_hopping(), model.poles, leads[f], wire.dissipation, batch);
-        gradient_error[set] = gradient_of_set(fields[f], of, model.conductances, grid.mu[set / grid.B_count], points, by_V, others);
+        const auto error = gradient_of_set(fields[f], of, model.conductances, grid.mu[set / grid.B_count], points, by_V, others);
+        gradient_error[2 * set] = error.shift, gradient_error[2 * set + 1] = error.at_gap;
     });
 }
 

@@ -378,6 +378,28 @@ def test_what_samples_next_to_the_gap_miss_is_added(seed, name):
     assert_allclose(slopes_of(found, name), slope, rtol=0, atol=7e-5 * largest)
 
 
+@pytest.mark.parametrize(("seed", "temperature"), [(4, 1.0), (4, 0.5), (5, 0.3)])
+@pytest.mark.parametrize("name", ["delta0", "g", "B"])
+def test_levels_of_one_spin_next_to_the_gap_may_move_much(seed, temperature, name):
+    """V_Z is a little less than Δ₀; alone, the closed form was 50 times as wrong as estimated."""
+    V = np.convolve(np.random.default_rng(seed).normal(0, 0.6, 80), np.ones(5) / 5, "same")
+    wire, along = Nanowire(V), np.zeros(80)
+    point = wire, 0.3, 0.95 * wire.delta0 / wire.zeeman_per_tesla, temperature
+    by_energies = ("mu", "gamma", "delta0", "bias", "V")
+    found = conductance_gradient(*point[:3], BIAS, temperature, parameters=[*by_energies, name])
+    slope, error = expected(name, *point, along)
+    unit = {
+        "delta0": 1.0,
+        "B": wire.zeeman_per_tesla,
+        "g": point[2] * wire.zeeman_per_tesla / wire.g,
+    }
+    wrong = abs(slopes_of(found, name) - slope).max() / unit[name]
+    largest = largest_slope(found, by_energies)
+    assert error < 1e-3 * largest
+    assert wrong < 3 * found.gradient_error.item() * largest
+    assert wrong < 1e-2 * largest
+
+
 @pytest.mark.parametrize("temperature", [0.05, 0.2])
 def test_a_wire_without_a_parent_has_them(temperature):
     """What is added of levels next to the gap is not divided by γ, which may be zero."""

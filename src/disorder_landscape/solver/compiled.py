@@ -198,6 +198,9 @@ class ThermalGradient(NamedTuple):
     difference: FloatArray
     """How far two ways to the derivative by the bias are apart, (mu, B), in e²/h per kT;
     infinite, and the derivatives NaN, where there is no model."""
+    at_gap: FloatArray
+    """By how much those by Δ₀ and V_Z may be off besides, where levels next to the gap are too
+    many to be told apart, (mu, B), in e²/h per kT."""
 
 
 def thermal_gradient(
@@ -219,7 +222,7 @@ def thermal_gradient(
         What `lead_slopes.rotated_lead_slopes` returns for them.
     """
     kT = BOLTZMANN * temperature
-    G, error, solved, by_V, others, difference = core.thermal_conductance_gradient(
+    G, error, solved, by_V, others, off = core.thermal_conductance_gradient(
         *handed_over([wire]),
         mu,
         B,
@@ -231,7 +234,9 @@ def thermal_gradient(
         core.TOLERANCE,
         GROWTH_LIMIT,
     )
-    return ThermalGradient(G, error, solved.astype(np.int64), by_V, others, difference)
+    return ThermalGradient(
+        G, error, solved.astype(np.int64), by_V, others, off[..., 0], off[..., 1]
+    )
 
 
 def isolated_ends(
