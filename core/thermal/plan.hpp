@@ -148,7 +148,7 @@ struct EnergyPlan {
             double share = std::numbers::pi / 2 * rule.weight[k] * gap * std::cos(angle) * kernel(at);
             to_gap.add(std::atanh(at / gap), share, weights.data(), nodes_below());
         }
-        double whole = std::acosh((std::abs(v) + KernelRule::WIDEST * at_kT) / gap);
+        double whole = std::acosh(std::max((std::abs(v) + KernelRule::WIDEST * at_kT) / gap, 1.0));
         for (int k = 0; k < POINTS_TO_GAP; ++k) {
             double at = whole * (1 + rule.node[k]) / 2, share = whole / 2 * rule.weight[k] * gap * std::sinh(at);
             for (int sign : {0, 1})

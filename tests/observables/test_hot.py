@@ -101,8 +101,9 @@ def test_a_smooth_function_is_averaged_rightly(temperature, sites):
     assert_allclose(weights @ smooth(energies), expected, rtol=0, atol=5e-5)
 
 
-def test_the_paper_s_wires_need_no_quadrature(monkeypatch):
-    """At 100, 200 and 300 mK and the paper's biases: at most one of 150 does."""
+@pytest.fixture
+def asked(monkeypatch):
+    """Return what the quadrature has been asked for."""
     asked = []
 
     def quadrature(*arguments, **settings):
@@ -110,6 +111,32 @@ def test_the_paper_s_wires_need_no_quadrature(monkeypatch):
         return thermal_quadrature(*arguments, **settings)
 
     monkeypatch.setattr(routes, "thermal_quadrature", quadrature)
+    return asked
+
+
+@pytest.mark.parametrize("temperature", [0.02, 0.05])
+@pytest.mark.parametrize(
+    "material",
+    [
+        {},
+        {"alpha": 30, "mass": 0.014, "g": 40, "gamma": 0.2, "delta0": 0.25},
+        {"alpha": 20, "mass": 0.023, "g": 15, "gamma": 0.2, "delta0": 0.25},
+    ],
+)
+def test_neither_do_cold_wires_with_biases_next_to_the_gap(material, temperature, asked):
+    """Kernels at smaller biases end below it. All of these sets were integrated."""
+    wire = Nanowire(np.random.default_rng(1).normal(0, 0.3, 150), **material)
+    bias = 0.9 * wire.delta0 * np.linspace(-1, 1, 5)
+    point = [wire], np.array([0.2, 0.5]), np.array([0.2, 0.6]), bias, temperature
+    found = routes.thermal_average(*point)
+    assert not asked
+    exact = thermal_quadrature(*point)
+    off = abs(found.conductance - exact.conductance).max(axis=(3, 4))
+    assert (off < found.error + exact.error).all()
+
+
+def test_the_paper_s_wires_need_no_quadrature(asked):
+    """At 100, 200 and 300 mK and the paper's biases: at most one of 150 does."""
     wire, _, _ = hot_wire(3)
     mu, B = np.linspace(0.03, 0.57, 5), np.linspace(0.04, 0.76, 10)
     for temperature in (0.1, 0.2, 0.3):
