@@ -41,7 +41,7 @@ MORE = 48, 5, 11
 """… and of the data that follow before all."""
 LINES = range(6, FEW[0] + 1, 2)
 """A way down takes so many lines of the highest μ, one number after the other."""
-WAYS_DOWN = 3
+WAYS_DOWN = 12
 """At most. The first is from the middle of the prior, the others from draws. (Of forty wires of the
 paper's disorder 33 arrive by the first, five by the second and two by the third.)"""
 DRAWS = 40
@@ -50,6 +50,8 @@ FORETOLD = 2, 5.0
 """Steps go on until V explains so many draws in a row before steps use them. χ² may be so many of
 its standard deviations above its mean: of 3,360 data it is two if all is well, since V is only as
 near as the draw before lets it be."""
+LOST = 2
+"""A way ends early where so many numbers of lines, one after the other, have not been foretold."""
 BACK = 5
 """Where more data are not explained then, steps go back to draws, at most so many times."""
 AGAIN = range(12, 20, 2)
@@ -106,8 +108,12 @@ class _Way:
 
     def _over(self, counts: range, x: FloatArray) -> tuple[FloatArray, Goal]:
         """Return unknowns (unknown,): near an optimum, if they explain data of all μ."""
+        lost = 0
         for lines in counts:
             x, foretells = self._foretell(lines, x, lines)
+            lost = 0 if foretells else lost + 1
+            if lost == LOST:
+                return x, "place"
         for part in range(LINES.stop, LINES.stop + BACK):
             if not foretells:
                 break
