@@ -8,6 +8,8 @@ from contextlib import suppress
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+SAME_UNITS = {"T": ("tesla",), "meV": ("mV",)}
+"""Other names of units; a bias of 1 mV is 1 meV."""
 SHOWN = 100
 """Characters of a value that a message shows."""
 
@@ -126,6 +128,8 @@ def grid_in(
         If the grid is empty, not one-dimensional, not numeric, unsorted or out of range.
     """
     must = f"be a number or an increasing list of numbers in {unit}"
+    given = str(getattr(values, "attrs", {}).get("units", unit))  # of xarray
+    require(given in (unit, *SAME_UNITS.get(unit, ())), name, must, f"its units are {given}")
     grid = np.atleast_1d(reals(name, values, must))  # contiguous: what the core takes
     require(grid.ndim == 1, name, must, f"it has shape {grid.shape}")
     require(grid.size > 0, name, must, "it is empty")

@@ -10,11 +10,11 @@ import xarray as xr
 from disorder_landscape.model.disorder import positions
 from disorder_landscape.model.parameters import FloatArray, Nanowire
 from disorder_landscape.model.quantities import with_units
+from disorder_landscape.model.stated import stated
 from disorder_landscape.observables.density_of_states import local_density_of_states
 from disorder_landscape.observables.modes import modes
 from disorder_landscape.parts import needs
 from disorder_landscape.pictures import write_picture
-from disorder_landscape.simulation import stated
 
 
 def look_inside(
@@ -47,7 +47,7 @@ def look_inside(
     for name, variable in density.isel(mu=0, B=0, drop=True).data_vars.items():
         result[name] = variable
     result["potential"] = ("site", wire.potential)
-    attrs = {**found.attrs, **stated(wire), "temperature": temperature}
+    attrs = {**found.attrs, **stated([wire]), "temperature": temperature}
     return with_units(result.assign_attrs(attrs))
 
 

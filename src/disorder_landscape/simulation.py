@@ -20,7 +20,6 @@ from disorder_landscape.model.parameters import (
     check_leads,
 )
 from disorder_landscape.model.quantities import AXES, CONDUCTANCES, with_units
-from disorder_landscape.model.ranges import STATED
 from disorder_landscape.observables.conductance import conductance
 from disorder_landscape.observables.grids import Progress
 from disorder_landscape.observables.visibility import topological_visibility
@@ -119,13 +118,7 @@ def simulate_wire(
             wire, grids["mu"], grids["B"], solver=solver, theta=theta
         )
     result["potential"] = ("site", wire.potential)
-    return with_units(result.assign_attrs(stated(wire)))
-
-
-def stated(wire: Nanowire) -> dict[str, Any]:
-    """Return the parameters that a file states of the wire in it."""
-    of_wire = {name: getattr(wire, name) for name in (*STATED, "barrier")}
-    return of_wire | {"parent_dissipation": wire.dissipation_of_parent}
+    return with_units(result)
 
 
 @needs("figures")

@@ -17,7 +17,7 @@ from disorder_landscape.files import read_json
 from disorder_landscape.inference.given import observation_of
 from disorder_landscape.inference.noise_hints import noise_hint, stated_noise_hint
 from disorder_landscape.inference.problem.distributions import Uniform
-from disorder_landscape.inference.problem.measured_dataset import measurement_of
+from disorder_landscape.inference.problem.measured_dataset import SETTINGS, measurement_of
 from disorder_landscape.inference.problem.measurement import settings_of
 from disorder_landscape.inference.problem.noise import noise_of_channels, parse_noise, stated_noise
 from disorder_landscape.inference.problem.observation import Observation
@@ -140,7 +140,9 @@ def test_settings_are_the_measurements_own(measured):
 def test_what_the_model_cannot_explain_is_flagged(unmodelled):
     more_components = realization(DATASET.model_copy(update={"components": 12}), 3)
     wire = {"gap": replace(TRUE.wire, delta0=0.096), "components": more_components.wire}[unmodelled]
-    result = infer(measure(wire), settings=SOON)
+    G = measure(wire)
+    G.attrs = {name: G.attrs[name] for name in SETTINGS}  # what is known of a device
+    result = infer(G, settings=SOON)
     assert result.attrs["verdict"] in (NOT_DESCRIBED, NOT_CONVERGED)
     assert result.attrs["attempts"] == 2
     assert result.attrs["excess"] > 10

@@ -223,8 +223,9 @@ def test_no_gap_is_beyond_the_parents_in_a_field():
 def test_leads_and_parents_that_are_not_as_the_wire_are_refused(device, name):
     prior = dl.Prior(1, 80, 3.0, alpha=8, g=24, dissipation=0, lever_arm=0.12, mu_offset=OFFSET)
     of_wire = {"lead_g": "g", "lead_alpha": "alpha", "parent_dissipation": "dissipation"}[name]
+    alone = device[1].drop_attrs(deep=False).assign_attrs({name: 1.0})
     with pytest.raises(ArgumentError, match=f"{of_wire} must be .* the measurement states 1"):
-        dl.infer(device[1].assign_attrs({name: 1.0}), prior, NOISE)
+        dl.infer(alone, prior, NOISE)
     both = device[1].assign_attrs({name: 1.0, of_wire: 2.0})
     with pytest.raises(ArgumentError, match=f"{name} must be the wire's .* the measurement's is 1"):
         dl.infer(both, prior, NOISE)
@@ -251,3 +252,9 @@ def test_what_is_at_a_limit_is_not_called_open():
     covariance = np.diag([1e-4, 1e-4, 1e-4, 1e-4, 0.81])
     assert left_open(UNKNOWNS, covariance)["not_fixed"] == "alpha"
     assert left_open(UNKNOWNS, covariance, ["alpha"])["not_fixed"] == ""
+
+
+@pytest.mark.parametrize("nothing", [None, list, "result.nc"])
+def test_what_is_no_result_has_no_samples(nothing):
+    with pytest.raises(ArgumentError, match=r"prediction must .*, but it is "):
+        sample_wires(nothing)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from disorder_landscape.arguments import ArgumentError, number_in, reals, require
+from disorder_landscape.arguments import ArgumentError, number_in, reals, require, shown
 from disorder_landscape.inference.problem.agreement import check_agreement
 from disorder_landscape.inference.problem.measurement import PAPERS_SETTINGS, Measurement
 from disorder_landscape.inference.problem.parameters import PARAMETERS, Setup, nanowire
@@ -143,6 +143,7 @@ def prior_of_result(result: xr.Dataset) -> Prior:
     ArgumentError
         As `mean_wire`.
     """
+    require(isinstance(result, xr.Dataset), "prediction", MUST, f"it is {shown(result)}")
     but = "its attribute prior is missing, or another version's: run infer again"
     try:
         given = json.loads(result.attrs.get("prior", ""))

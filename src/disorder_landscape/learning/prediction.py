@@ -11,6 +11,7 @@ from disorder_landscape.learning.model import TrainedModel, load_model, on_grid_
 from disorder_landscape.learning.scaling import conductance_array
 from disorder_landscape.model.disorder import potential_from_components
 from disorder_landscape.model.quantities import CONDUCTANCES, with_units
+from disorder_landscape.model.stated import check_wire_of_networks
 
 
 def predict(model: str | Path | TrainedModel, G: xr.Dataset) -> xr.Dataset:
@@ -34,12 +35,15 @@ def predict(model: str | Path | TrainedModel, G: xr.Dataset) -> xr.Dataset:
     Raises
     ------
     ArgumentError
-        If G lacks a variable, holds NaN or lacks a point of the grid, or the folder holds no model.
+        If G lacks a variable, holds NaN, lacks a point of the grid, or states a wire unlike those
+        that the model has seen, or the folder holds no model.
     """
     if not isinstance(model, TrainedModel):
         model = load_model(model)
     dataset = model.config.dataset
-    X = conductance_array(on_grid_of(dataset, G))
+    seen = on_grid_of(dataset, G)
+    check_wire_of_networks(G.attrs)
+    X = conductance_array(seen)
     Y = model.predict_labels(X)
     columns = dict(zip(model.labels.names, Y.T, strict=True))
     components = Y[:, : dataset.components]

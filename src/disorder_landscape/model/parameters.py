@@ -65,7 +65,7 @@ class Nanowire:
     lattice : float
         Lattice spacing a in nm.
     g : float
-        Landé g-factor.
+        Landé g-factor, without its sign: that turns the field.
     gamma : float
         Coupling γ to the parent superconductor in meV (self-energy below Eq. S1).
     delta0 : float

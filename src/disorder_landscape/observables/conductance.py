@@ -15,6 +15,7 @@ from disorder_landscape.model.hamiltonian import FULL_TURN
 from disorder_landscape.model.parameters import BOLTZMANN, TEMPERATURE, FloatArray, Nanowire
 from disorder_landscape.model.quantities import CONDUCTANCES, with_units
 from disorder_landscape.model.ranges import checked_temperature
+from disorder_landscape.model.stated import stated
 from disorder_landscape.observables.grids import Progress, checked_grids
 from disorder_landscape.solver import routes
 from disorder_landscape.solver.energy_grid import ENERGY_SPACING, thermal_grid
@@ -56,8 +57,8 @@ def conductance(
     -------
     xarray.Dataset
         G_LL, G_RR, G_LR, G_RL in e²/h, dims (mu, B, bias), with a leading dim realization for
-        several wires; solver, temperature, theta and, if the wires have the same, barrier as
-        attributes. An exact average also has `error`, the estimated error in e²/h, and
+        several wires; solver, temperature, theta, and whatever parameters all wires have in common
+        as attributes. An exact average also has `error`, the estimated error in e²/h, and
         `energies`, how many the solver was asked for, dims (mu, B).
 
     Raises
@@ -88,9 +89,7 @@ def conductance(
         warnings.warn(f"{message} number: there the solver failed.", RuntimeWarning, stacklevel=2)
     data = {name: (("realization", *grids), G[..., i]) for i, name in enumerate(CONDUCTANCES)}
     data |= {name: (("realization", "mu", "B"), values) for name, values in of_average.items()}
-    attrs = {"temperature": temperature, "solver": solver, "theta": theta}
-    if len({w.barrier for w in wires}) == 1:
-        attrs["barrier"] = wires[0].barrier
+    attrs = {**stated(wires), "temperature": temperature, "solver": solver, "theta": theta}
     dataset = with_units(xr.Dataset(data, coords=grids, attrs=attrs))
     return dataset.isel(realization=0) if isinstance(wire, Nanowire) else dataset
 

@@ -17,7 +17,6 @@ from disorder_landscape.inference.problem.measured_numbers import (
 )
 from disorder_landscape.inference.problem.measurement import Measurement
 from disorder_landscape.model.hamiltonian import FULL_TURN
-from disorder_landscape.model.parameters import Nanowire
 from disorder_landscape.model.quantities import AXES, CONDUCTANCES
 from disorder_landscape.model.ranges import (
     PARAMETER_RANGES,
@@ -25,9 +24,8 @@ from disorder_landscape.model.ranges import (
     checked_barrier,
     checked_temperature,
 )
+from disorder_landscape.model.stated import check_wire_of_networks
 
-OF_ALL_NETWORKS = tuple(name for name in STATED if name not in ("alpha", "lead_mu"))
-"""Those that all wires of this program's networks have in common."""
 AS_THE_WIRE = {"lead_alpha": "alpha", "lead_g": "g", "parent_dissipation": "dissipation"}
 """Parameters of leads and parent that are, in every inversion, those of the wire."""
 SETTINGS = ("theta", "barrier", "temperature")
@@ -142,7 +140,7 @@ def _stated(attrs: Mapping[Any, Any]) -> dict[str, float]:
 
 
 def check_wire(measurement: Measurement) -> None:
-    """Require that a measurement states the values of OF_ALL_NETWORKS, where it states any.
+    """Require that a measurement is over μ, and of a wire as networks know it, if it says so.
 
     Raises
     ------
@@ -151,11 +149,7 @@ def check_wire(measurement: Measurement) -> None:
     """
     on_mu = measurement.axis == "mu"
     require(on_mu, "measurement", "be over mu in meV", "it is over gate, whose unit is not known")
-    for name in OF_ALL_NETWORKS:
-        usual = getattr(Nanowire, name)
-        stated = measurement.stated.get(name, usual)
-        must = f"be {usual:g}, as in all simulations here"
-        require(bool(np.isclose(stated, usual)), name, must, f"the measurement's is {stated:g}")
+    check_wire_of_networks(measurement.stated)
 
 
 def with_axes(dataset: xr.Dataset) -> xr.Dataset:

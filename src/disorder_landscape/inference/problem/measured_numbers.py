@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from scipy.constants import e, h
 
-from disorder_landscape.arguments import grid_in, require
+from disorder_landscape.arguments import SAME_UNITS, grid_in, require
 from disorder_landscape.inference.problem.measurement import Measurement
 from disorder_landscape.model.parameters import FloatArray
 from disorder_landscape.model.quantities import AXES, CONDUCTANCES
@@ -24,7 +24,7 @@ ERRORS = 6.0
 """… and so many standard deviations of errors may be beyond it. …"""
 LARGEST = 10.0
 """… More than this are none, whatever the errors are."""
-AXIS_UNITS = {"mu": ("meV",), "B": ("T", "tesla"), "bias": ("meV", "mV")}
+AXIS_UNITS = {"mu": ("meV",), "B": ("T", *SAME_UNITS["T"]), "bias": ("meV", *SAME_UNITS["meV"])}
 """Units that axes may state."""
 LARGEST_BIAS = PARAMETER_RANGES["delta0"][1]
 """In meV: there is no larger gap, which biases stay below, …"""
@@ -51,8 +51,9 @@ def conductances_of(dataset: xr.Dataset, given: Sequence[str]) -> FloatArray:
     measured = abs(G[np.isfinite(G)])
     require(measured.size > 0, "measurement", "hold finite numbers", "it holds none")
     largest = measured.max()
+    require(largest > 0, "measurement", "hold conductances", "all of them are zero")
     but = f"none is larger than {largest:.3g}, as if they were in siemens"
-    require(not 0 < largest < 2 * QUANTUM, "measurement", IN_QUANTA, but)
+    require(not largest < 2 * QUANTUM, "measurement", IN_QUANTA, but)
     but = f"one is {largest:.3g}, more than one subband can carry"
     require(largest < LARGEST, "measurement", IN_QUANTA, but)
     return G
