@@ -1,1 +1,1 @@
-"""What one asks of a wire: conductances, their derivatives, and the topological visibility."""
+"""What one asks of a wire: conductances, their derivatives, T_IV, gaps, density of states, modes."""

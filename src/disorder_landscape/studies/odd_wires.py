@@ -138,7 +138,7 @@ def compare_with_quadrature(seed: int, index: int) -> dict[str, Any]:
 
 
 def _largest(difference: FloatArray) -> float:
-    """Return the largest absolute value, infinity for NaN, which JSON does not know."""
+    """Return the largest absolute value; a number larger than any, where there is NaN."""
     largest = float(abs(difference).max())
     return largest if np.isfinite(largest) else 1e300
 

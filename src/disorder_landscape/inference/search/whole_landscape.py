@@ -50,7 +50,7 @@ FORETOLD = 2, 5.0
 """Steps go on until V explains so many draws in a row before steps use them. χ² may be so many of
 its standard deviations above its mean: of 3,360 data it is two if all is well, since V is only as
 near as the draw before lets it be."""
-LOST = 2
+LOST = 3
 """A way ends early where so many numbers of lines, one after the other, have not been foretold."""
 BACK = 5
 """Where more data are not explained then, steps go back to draws, at most so many times."""
