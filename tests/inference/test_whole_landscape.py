@@ -22,6 +22,7 @@ from disorder_landscape.inference.search.whole_landscape import (
     FEW,
     FORETOLD,
     LINES,
+    LOST,
     STARTS,
     WAYS_DOWN,
     _in_fields,
@@ -181,7 +182,7 @@ def test_draws_are_of_fields_other_than_zero(whole):
 
 
 def test_other_ways_down_are_tried_from_draws_of_the_prior(whole, far):
-    """Where no draw of data is foretold, a way ends with all data."""
+    """Where no draw of data is foretold, a way ends early, with all data."""
     begun, names = [], []
 
     def steps(of, x, attempt, name, known, goal):
@@ -194,10 +195,24 @@ def test_other_ways_down_are_tried_from_draws_of_the_prior(whole, far):
     optima, ways = optima_of_whole_landscape(whole, Ending(where=steps), 0)
     assert ways == WAYS_DOWN == len(begun)
     assert [name for name in names if name] == [f"{way}.{way}" for way in range(WAYS_DOWN)]
-    assert names.count(None) == DRAWS * len(LINES) * WAYS_DOWN
+    assert names.count(None) == DRAWS * LOST[0] * WAYS_DOWN
     assert not begun[0].any()
     assert abs(begun[1] - begun[2]).max() > 1
     assert not optima.fits
+
+
+def test_a_way_that_is_near_does_not_end_early(whole, monkeypatch):
+    """Where only draws of many lines are not foretold, it goes on to the lowest of them."""
+    drawn = []
+
+    def of(self, highest, counts, rng):
+        drawn.append(counts[0])
+        return replace(self, data=self.data + (1e3 if counts[0] >= LOST[1] else 0.0))
+
+    monkeypatch.setattr(Whole, "on_random_points", of)
+    exact = posterior(whole)
+    optima_of_whole_landscape(whole, Ending(where=lambda *_: exact), 0)
+    assert list(dict.fromkeys(drawn)) == list(LINES)
 
 
 def test_steps_go_back_to_draws_where_more_data_are_not_explained(whole, far):
@@ -222,10 +237,10 @@ def test_an_interrupted_search_goes_on_with_the_next_lines(whole, far):
             raise KeyboardInterrupt
         return Gaussian(far.mean + len(begun), far.covariance)
 
-    interrupted = 3 * DRAWS + 1
+    interrupted = 2 * DRAWS + 1
     with pytest.raises(KeyboardInterrupt):
         optima_of_whole_landscape(whole, Ending(kept.cached, where=steps), 0)
-    assert len(kept) == 3
+    assert len(kept) == 2
     last, interrupted = begun[-1], 0
     begun.clear()
     optima_of_whole_landscape(whole, Ending(kept.cached, where=steps), 0)

@@ -1,1 +1,1 @@
-"""What one asks of a wire: conductances, their derivatives, T_IV, gaps, density of states, modes."""
+"""What one asks of a wire: conductances, derivatives, T_IV, gaps, density of states, modes."""
