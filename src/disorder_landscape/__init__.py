@@ -18,6 +18,7 @@ from disorder_landscape.observables.visibility import topological_visibility
 from disorder_landscape.parts import MissingPartError, needs
 
 if TYPE_CHECKING:
+    from disorder_landscape.inference.draw_wires import draw_wires
     from disorder_landscape.inference.infer import infer
     from disorder_landscape.inference.inferred import sample_wires
     from disorder_landscape.inference.problem.distributions import Normal
@@ -36,6 +37,7 @@ __all__ = [
     "conductance",
     "conductance_gradient",
     "differentiable_conductance",
+    "draw_wires",
     "gap",
     "infer",
     "local_density_of_states",
@@ -52,6 +54,7 @@ _IMPORTED_LATER = {
     "Normal": ("inference", "inference.problem.distributions"),
     "Prior": ("inference", "inference.problem.prior"),
     "differentiable_conductance": ("learning", "learning.differentiable"),
+    "draw_wires": ("inference", "inference.draw_wires"),
     "infer": ("inference", "inference.infer"),
     "predict": ("learning", "learning.prediction"),
     "sample_wires": ("inference", "inference.inferred"),

@@ -13,6 +13,7 @@ import disorder_landscape as dl
 import disorder_landscape.inference.problem.observation as observation_module
 from disorder_landscape import ArgumentError
 from disorder_landscape.config import DatasetConfig
+from disorder_landscape.inference.draw_wires import draw_wires
 from disorder_landscape.inference.given import observation_of
 from disorder_landscape.inference.problem.distributions import Normal, Uniform
 from disorder_landscape.inference.problem.measurement import empty_measurement
@@ -20,7 +21,7 @@ from disorder_landscape.inference.problem.parameters import BY_NAME, PARAMETERS
 from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.search.gauss_newton import linearise
-from disorder_landscape.model.disorder import smooth_noise
+from disorder_landscape.model.disorder import disorder_realization, smooth_noise
 from disorder_landscape.model.quantities import CONDUCTANCES
 from disorder_landscape.runs import REPOSITORY
 from disorder_landscape.studies.truth import labels as labels_of
@@ -332,3 +333,27 @@ def test_leads_that_conduct_nothing_are_refused():
     with pytest.raises(ArgumentError, match=r"from 0 to 16\.6 meV, .* it is -1\."):
         observation(replace(wide, lead_mu=-1.0))
     assert abs(observation(replace(wide, lead_mu=8.0)).simulate(np.zeros((1, 5)))).max() > 1e-3
+
+
+def test_wires_are_drawn_from_a_prior():
+    """What it leaves open of the measurement has no effect; the rest is the paper's."""
+    prior = Prior(5, 100, g=(20, 30), alpha=7.0, barrier_left=(5, 25), lever_arm=(0.1, 0.2))
+    wires = draw_wires(prior, 500, seed=3)
+    g, left = np.array([wire.g for wire in wires]), np.array([wire.barrier[0] for wire in wires])
+    assert 20 < g.min() < 20.5
+    assert 29.5 < g.max() < 30
+    assert abs(np.corrcoef(g, left)[0, 1]) < 0.2
+    assert {(wire.alpha, wire.barrier[1], wire.delta0) for wire in wires} == {(7.0, 15.0, 0.12)}
+    V = np.array([wire.potential for wire in wires])
+    rng = np.random.default_rng(0)
+    others = np.array([disorder_realization(rng, 5, 100)[1] for _ in range(500)])
+    assert V.std() == pytest.approx(others.std(), rel=0.06)
+    again = draw_wires(prior, 2, seed=3)
+    np.testing.assert_array_equal(again[1].potential, draw_wires(prior, 2, seed=3)[1].potential)
+    assert (again[0].potential != draw_wires(prior, seed=4)[0].potential).any()
+
+
+@pytest.mark.parametrize("arguments", [(None,), (Prior(5), 0), (Prior(5), 1, -1), (Prior(5), 1.5)])
+def test_wires_are_drawn_from_priors_alone(arguments):
+    with pytest.raises(ArgumentError, match="must be"):
+        draw_wires(*arguments)
