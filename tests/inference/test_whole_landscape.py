@@ -292,12 +292,12 @@ def test_no_answer_of_a_whole_landscape_is_surely_right(whole):
         (
             0.6,
             Prior(components=None),
-            "It is known to be found from 4 meV on (300 sites",
+            "It is known to be found from 2.1 meV on (300 sites",
         ),
         (
             0.6,
             Prior(components=None, sites=60),
-            "from 2.8 meV on (60 sites of this disorder).",
+            "from 2 meV on (60 sites of this disorder).",
         ),
         (0.6, Prior(components=None, amplitude=0.3), ""),
         (3.0, Prior(components=None, lever_arm=2.0), ""),
