@@ -183,10 +183,11 @@ def _at_one_gap(
         missing = [name for name in names if name not in found.by]
         moved = [name for name in THROUGH_GAP if name in names]
         if complete:
-            _complete(found, wire, mu, B, bias, temperature, names)
+            point = wire, mu, B, bias, temperature
+            _complete(found, point, names)
             for m, f in np.argwhere(at_gap > RESORT):
                 at_gap[m, f] = 0.0
-                _resort(found, wire, mu, B, bias, temperature, moved, (m, f))
+                _resort(found, point, moved, (m, f))
         else:
             for values in found.by.values():
                 values[~np.isfinite(found.gradient_error)] = np.nan
@@ -213,19 +214,14 @@ def has_closed_form(wire: Nanowire, bias: FloatArray, temperature: float) -> boo
     return reaches and 0 < temperature <= HOTTEST
 
 
-def _complete(
-    found: Gradient,
-    wire: Nanowire,
-    mu: FloatArray,
-    B: FloatArray,
-    bias: FloatArray,
-    temperature: float,
-    names: Sequence[str],
-) -> None:
+_Point = tuple[Nanowire, FloatArray, FloatArray, FloatArray, float]
+
+
+def _complete(found: Gradient, point: _Point, names: Sequence[str]) -> None:
     """Take conductances that have no good model from the quadrature, and what has none at all."""
+    wire, mu, B, bias, temperature = point
     for m, f in np.argwhere(~(found.error <= compiled.core.TOLERANCE)):
-        point = mu[m : m + 1], B[f : f + 1], bias, temperature
-        average = thermal_quadrature([wire], *point)
+        average = thermal_quadrature([wire], mu[m : m + 1], B[f : f + 1], bias, temperature)
         found.conductance[m, f], found.error[m, f] = (
             average.conductance[0, 0, 0],
             average.error.item(),
@@ -235,21 +231,12 @@ def _complete(
             continue
         found.gradient_error[m, f] = LEAST
         asked = sorted(set(names) & set(found.by) - {"critical_field"})
-        _resort(found, wire, mu, B, bias, temperature, asked, (m, f))
+        _resort(found, point, asked, (m, f))
 
 
-def _resort(
-    found: Gradient,
-    wire: Nanowire,
-    mu: FloatArray,
-    B: FloatArray,
-    bias: FloatArray,
-    temperature: float,
-    names: Sequence[str],
-    at: tuple[int, int],
-) -> None:
+def _resort(found: Gradient, point: _Point, names: Sequence[str], at: tuple[int, int]) -> None:
     """Take the derivatives of one set with respect to what is named from differences."""
-    m, f = at
+    (wire, mu, B, bias, temperature), (m, f) = point, at
     for name in names:
         one, share = difference(wire, mu[m : m + 1], B[f : f + 1], bias, temperature, name)
         found.by[name][m, f] = one[0, 0]
