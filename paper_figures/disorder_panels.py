@@ -11,7 +11,7 @@ from matplotlib.ticker import MaxNLocator
 from disorder_landscape.config import WireConfig
 from disorder_landscape.model.disorder import positions
 from plotting import FULL_WIDTH, INPUT, PREDICTION, inches, keep_labels_inside, write
-from wires import in_rows, letters
+from wires import ROWS, in_rows, letters, wire_of
 
 LEFT, RIGHT, TOP, GAP = 0.58, 0.08, 0.42, 0.1
 COMPONENTS, POTENTIAL = (2.12, 1.1), (0.38, 1.3)
@@ -39,8 +39,8 @@ def disorder_data(chosen: xr.Dataset, fixed: WireConfig) -> xr.Dataset:
     """
     table = in_rows(chosen)
     wires = [
-        [fixed.wire(V, float(alpha)) for V, alpha in zip(*pair, strict=True)]
-        for pair in zip(table["potential"].to_numpy(), table["alpha"].to_numpy(), strict=True)
+        [wire_of(table, i, row, fixed) for row in range(len(ROWS))]
+        for i in range(table.sizes["realization"])
     ]
     potential = np.array([[wire.potential_with_barriers for wire in pair] for pair in wires])
     attrs = {"units": "meV", "long_name": "disorder potential with barriers"}

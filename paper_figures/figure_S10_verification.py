@@ -20,7 +20,7 @@ from tqdm import tqdm
 
 from command import Request, figure_script
 from disorder_landscape import Nanowire, conductance, verify
-from disorder_landscape.config import Config, WireConfig
+from disorder_landscape.config import Config
 from disorder_landscape.inference.defaults import OTHER_ANGLE, OTHER_BARRIERS, shifts
 from disorder_landscape.inference.verification.comparison import scores
 from disorder_landscape.inference.verification.controls import control_wires
@@ -39,7 +39,7 @@ from plotting import (
     outer_labels,
     write,
 )
-from wires import drawn_realizations, in_rows, letters
+from wires import drawn_realizations, in_rows, letters, wire_of
 
 KINDS = ("mu, B", "bias", "barrier", "theta")
 """What is other than in the measurement that the network has seen."""
@@ -71,7 +71,7 @@ def data(request: Request) -> xr.Dataset:
     verified = []
     for i in tqdm(range(chosen.sizes["realization"]), desc="verify", unit=" wires", delay=2):
         prediction = table.isel(realization=i, row=1, drop=True)
-        true = _wire(table, i, 0, config.dataset.wire)
+        true = wire_of(table, i, 0, config.dataset.wire)
         measurements = [_measure(true, kind, config) for kind in KINDS]
         result = verify(
             prediction,
@@ -85,10 +85,6 @@ def data(request: Request) -> xr.Dataset:
     return xr.merge([panel_a, _maps(table, config)]).assign_attrs(
         barriers=OTHER_BARRIERS, theta=float(np.degrees(OTHER_ANGLE))
     )
-
-
-def _wire(table: xr.Dataset, i: int, row: int, fixed: WireConfig) -> Nanowire:
-    return fixed.wire(table["potential"][i, row].to_numpy(), float(table["alpha"][i, row]))
 
 
 def _measure(wire: Nanowire, kind: str, config: Config) -> xr.Dataset:
@@ -134,7 +130,7 @@ def _maps(table: xr.Dataset, config: Config) -> xr.Dataset:
     figures, dataset = config.figures, config.dataset
     fields = np.linspace(0.0, dataset.B_max, figures.tilted_B_points)
     bias = np.linspace(-figures.bias_max, figures.bias_max, figures.bias_points)
-    pair = [_wire(table, 0, row, dataset.wire) for row in (0, 1)]
+    pair = [wire_of(table, 0, row, dataset.wire) for row in (0, 1)]
     wires = [*pair, control_wires(dataset, 1)[0]]
     G = [
         conductance(

@@ -54,7 +54,7 @@ def simulate_rows(
     """
     table = in_rows(chosen)
     wires = [
-        fixed.wire(table["potential"][i, j].to_numpy(), float(table["alpha"][i, j]))
+        wire_of(table, i, j, fixed)
         for i in range(table.sizes["realization"])
         for j in range(len(ROWS))
     ]
@@ -81,6 +81,11 @@ def in_rows(chosen: xr.Dataset) -> xr.Dataset:
     table = xr.concat(rows, "row", combine_attrs="override").transpose("realization", "row", ...)
     coords = {name: chosen[name] for name in ("realization", "component", "site")}
     return table.assign_coords({"row": list(ROWS), **coords})
+
+
+def wire_of(table: xr.Dataset, i: int, row: int, fixed: WireConfig) -> Nanowire:
+    """Return the wire of realization i in a row of `in_rows`."""
+    return fixed.wire(table["potential"][i, row].to_numpy(), float(table["alpha"][i, row]))
 
 
 def letters(data: xr.Dataset) -> list[str]:

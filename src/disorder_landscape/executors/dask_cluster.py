@@ -7,12 +7,10 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from threadpoolctl import threadpool_limits
-
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.executors.executor import Result, Task
+from disorder_landscape.executors.local import in_one_thread
 from disorder_landscape.parts import needs
-from disorder_landscape.solver.compiled import threads_at_work
 
 ANSWERS_WITHIN = 30
 """Seconds in which the scheduler must answer."""
@@ -81,9 +79,5 @@ def _by_itself(function: Callable[[Task], Result], task: Task) -> Result:
     """
     import dask
 
-    with (
-        dask.config.set(scheduler="synchronous"),
-        threads_at_work(1),
-        threadpool_limits(1, user_api="blas"),
-    ):
+    with dask.config.set(scheduler="synchronous"), in_one_thread():
         return function(task)

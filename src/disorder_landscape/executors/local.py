@@ -8,6 +8,7 @@ import threading
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing import active_children, get_context, parent_process
 
@@ -26,6 +27,13 @@ THREADS = (
     "TF_NUM_INTEROP_THREADS",
 )
 """What tells libraries that are not imported yet how many threads they may have."""
+
+
+@contextmanager
+def in_one_thread() -> Iterator[None]:
+    """Keep the core and linear algebra to one thread, as all tasks are."""
+    with threads_at_work(1), threadpool_limits(1, user_api="blas"):
+        yield
 
 
 @dataclass(frozen=True)
@@ -58,7 +66,7 @@ class LocalProcesses:
             If a worker was killed: all others end with it.
         """
         if self.workers == 1:
-            with threads_at_work(1), threadpool_limits(1, user_api="blas"):
+            with in_one_thread():
                 yield from map(function, tasks)
             return
         before = set(active_children())

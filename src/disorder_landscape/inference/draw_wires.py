@@ -40,5 +40,5 @@ def draw_wires(prior: Prior, count: int = 1, seed: int = 0) -> list[Nanowire]:
     barrier = Nanowire.barrier
     nothing = Measurement(np.zeros((1, 1, 1, 4)), zero, zero, zero, 0.0, barrier, TEMPERATURE)
     unknowns = Unknowns(prior.for_measurement(nothing))
-    X = unknowns.white_noise.draw(rng, 2 * count)[:count]  # without those that are opposite to them
+    X = unknowns.white_noise.draw_apart(rng, count)
     return [device.wire for device in unknowns.devices(X, nothing)]

@@ -16,7 +16,7 @@ from disorder_landscape.model.parameters import BOLTZMANN, TEMPERATURE, FloatArr
 from disorder_landscape.model.quantities import CONDUCTANCES, with_units
 from disorder_landscape.model.ranges import checked_temperature
 from disorder_landscape.model.stated import stated
-from disorder_landscape.observables.grids import Progress, checked_grids
+from disorder_landscape.observables.grids import Progress, checked_grids, least_gap
 from disorder_landscape.solver import routes
 from disorder_landscape.solver.energy_grid import ENERGY_SPACING, thermal_grid
 
@@ -80,7 +80,7 @@ def conductance(
     if temperature > 0 and solver == "fast" and energy_spacing is None:
         G, of_average = _exact(wires, grids, temperature, theta, report)
     else:
-        delta0 = min(w.in_field(abs(grids["B"]).max()).delta0 for w in wires)
+        delta0 = least_gap(wires, grids["B"])
         omega, combined = _at_energies(grids["bias"], temperature, delta0, energy_spacing)
         G, of_average = _combined(wires, grids, omega, combined, theta, solver, report), {}
     missing = np.isnan(G).any(axis=(3, 4))

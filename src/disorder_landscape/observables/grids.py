@@ -39,5 +39,10 @@ def checked_grids(
         If one is empty, unsorted or out of range.
     """
     grids = checked_mu_and_B(mu, B)
-    edge = BELOW_GAP * min(w.in_field(abs(grids["B"]).max()).delta0 for w in wires)
+    edge = BELOW_GAP * least_gap(wires, grids["B"])
     return {**grids, "bias": grid_in("bias", bias, -edge, edge, "meV")}
+
+
+def least_gap(wires: Sequence[Nanowire], B: FloatArray) -> float:
+    """Return the smallest gap in meV that a parent of these wires has in these fields in T."""
+    return min(wire.in_field(abs(B).max()).delta0 for wire in wires)

@@ -185,7 +185,7 @@ def _at_one_gap(
         if complete:
             point = wire, mu, B, bias, temperature
             _complete(found, point, names)
-            for m, f in np.argwhere(at_gap > RESORT):
+            for m, f in np.argwhere(at_gap > RESORT) if moved else ():
                 at_gap[m, f] = 0.0
                 _resort(found, point, moved, (m, f))
         else:

@@ -29,6 +29,10 @@ class Gaussian:
         spread = np.concatenate([half, -half]) @ np.linalg.cholesky(self.covariance).T
         return np.asarray(self.mean + spread)
 
+    def draw_apart(self, rng: np.random.Generator, count: int) -> FloatArray:
+        """Return samples, shape (sample, unknown), of which no two are a pair."""
+        return self.draw(rng, 2 * count)[:count]
+
     def to_dict(self) -> dict[str, Any]:
         """Return what JSON can hold, to the last bit."""
         return {"mean": self.mean.tolist(), "covariance": self.covariance.tolist()}

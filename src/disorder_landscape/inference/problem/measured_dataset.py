@@ -19,6 +19,8 @@ from disorder_landscape.inference.problem.measurement import Measurement
 from disorder_landscape.model.hamiltonian import FULL_TURN
 from disorder_landscape.model.quantities import AXES, CONDUCTANCES
 from disorder_landscape.model.ranges import (
+    B_RANGE,
+    MU_RANGE,
     PARAMETER_RANGES,
     STATED,
     checked_barrier,
@@ -71,8 +73,8 @@ def measurement_of(dataset: xr.Dataset, usual: Mapping[str, Any] | None = None) 
     there, bias = np.isfinite(G).any(axis=(0, 1, 3)), biases_of(dataset)
     return Measurement(
         G=G[:, :, there],
-        mu=axis_of(dataset, "mu", IN_ANY_UNIT if axes[0] == GATE else 1e3),
-        B=axis_of(dataset, "B", 100.0),
+        mu=axis_of(dataset, "mu", IN_ANY_UNIT if axes[0] == GATE else MU_RANGE[1]),
+        B=axis_of(dataset, "B", B_RANGE[1]),
         bias=bias[there],
         left_out=bias[~there],
         theta=number_in("theta", settings["theta"], -FULL_TURN, FULL_TURN, "radians"),

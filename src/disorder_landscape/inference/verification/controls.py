@@ -36,7 +36,7 @@ def disorder_model(
 def wires_like(wire: Nanowire, prior: Prior, count: int, seed: int = 0) -> list[Nanowire]:
     """Return wires with random disorder and α of a prior, which are like this one in all else."""
     unknowns, rng = Unknowns(prior), np.random.default_rng([seed, 3])
-    X = unknowns.white_noise.draw(rng, 2 * count)[:count]  # without those that are opposite to them
+    X = unknowns.white_noise.draw_apart(rng, count)
     both = zip(unknowns.potential(X), unknowns.parameter("alpha", X), strict=True)
     return [replace(wire, potential=V, alpha=float(alpha)) for V, alpha in both]
 
