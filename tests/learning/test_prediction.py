@@ -141,3 +141,9 @@ def test_of_a_larger_grid_the_network_sees_its_own_points(model, G):
     larger = xr.concat([G, between], "mu", join="outer").sortby("mu").fillna(-1.0)
     assert larger.sizes["B"] == 2 * G.sizes["B"]
     assert predict(model, larger).equals(predict(model, G))
+
+
+@pytest.mark.parametrize("g", [20.0, "25 or so", np.nan])
+def test_conductances_of_another_wire_are_refused(model, G, g):
+    with pytest.raises(ArgumentError, match="Argument g must be "):
+        predict(model, G.assign_attrs(g=g))

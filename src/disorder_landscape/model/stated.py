@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from disorder_landscape.arguments import require
+from disorder_landscape.arguments import number_in, require
 from disorder_landscape.model.parameters import Nanowire
-from disorder_landscape.model.ranges import STATED
+from disorder_landscape.model.ranges import PARAMETER_RANGES, STATED
 
 OF_ALL_NETWORKS = tuple(name for name in STATED if name not in ("alpha", "lead_mu"))
 """Those that all wires of this program's networks have in common."""
@@ -28,10 +28,10 @@ def check_wire_of_networks(said: Mapping[str, Any]) -> None:
     Raises
     ------
     ArgumentError
-        If one of OF_ALL_NETWORKS has another value.
+        If one of OF_ALL_NETWORKS has another value, or none that a wire can have.
     """
     for name in OF_ALL_NETWORKS:
         usual = getattr(Nanowire, name)
-        value = float(said.get(name, usual))
+        value = number_in(name, said.get(name, usual), *PARAMETER_RANGES[name])
         must = f"be {usual:g}, as in all wires that networks here have seen"
         require(bool(np.isclose(value, usual)), name, must, f"the measurement's is {value:g}")
