@@ -85,7 +85,7 @@ def in_rows(chosen: xr.Dataset) -> xr.Dataset:
 
 def wire_of(table: xr.Dataset, i: int, row: int, fixed: WireConfig) -> Nanowire:
     """Return the wire of realization i in a row of `in_rows`."""
-    return fixed.wire(table["potential"][i, row].to_numpy(), float(table["alpha"][i, row]))
+    return fixed.with_disorder(table["potential"][i, row].to_numpy(), float(table["alpha"][i, row]))
 
 
 def letters(data: xr.Dataset) -> list[str]:

@@ -56,7 +56,7 @@ class WireConfig(_Section):
         check_leads(self.lead_mu, Nanowire.mass, Nanowire.lattice)
         return self
 
-    def wire(self, potential: FloatArray, alpha: float) -> Nanowire:
+    def with_disorder(self, potential: FloatArray, alpha: float) -> Nanowire:
         """Return the wire with this V (site,) in meV and α in meV nm."""
         return Nanowire(
             potential, alpha, barrier=(self.barrier, self.barrier), lead_mu=self.lead_mu

@@ -113,7 +113,7 @@ def _simulated(model: str, mean: str) -> xr.Dataset:
 def _test_wires(model: str) -> list[Nanowire]:
     test, network = _loaded(model)
     pairs = zip(test["potential"].to_numpy(), test["alpha"].to_numpy(), strict=True)
-    return [network.config.dataset.wire.wire(V, float(alpha)) for V, alpha in pairs]
+    return [network.config.dataset.wire.with_disorder(V, float(alpha)) for V, alpha in pairs]
 
 
 def _predicted_wires(model: str, mean: str) -> list[Nanowire]:
@@ -127,7 +127,7 @@ def _predicted_wires(model: str, mean: str) -> list[Nanowire]:
     V += (means[mean] - V.mean(axis=1))[:, None]
     pairs = zip(V, predicted["alpha"].to_numpy(), strict=True)
     fixed = network.config.dataset.wire
-    return [fixed.wire(potential, float(alpha)) for potential, alpha in pairs]
+    return [fixed.with_disorder(potential, float(alpha)) for potential, alpha in pairs]
 
 
 def _r2(true: xr.DataArray, other: xr.DataArray) -> float:

@@ -31,7 +31,7 @@ class Realization:
     @property
     def wire(self) -> Nanowire:
         """The wire with this disorder."""
-        return self.fixed.wire(self.potential, self.alpha)
+        return self.fixed.with_disorder(self.potential, self.alpha)
 
 
 def realization(config: DatasetConfig, index: int) -> Realization:

@@ -69,7 +69,7 @@ class VerificationPlan(Plan):
         """
         tests, predictions, config = _predicted()
         test = tests.isel(realization=task.index)
-        wire = config.wire.wire(test["potential"].to_numpy(), float(test["alpha"]))
+        wire = config.wire.with_disorder(test["potential"].to_numpy(), float(test["alpha"]))
         measurements = [
             conductance(replace(wire, barrier=OTHER_BARRIERS), MU, B, BIAS, config.temperature),
             conductance(wire, MU[:1], B[1:], BIAS, config.temperature, theta=OTHER_ANGLE),
