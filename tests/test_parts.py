@@ -129,6 +129,14 @@ except dl.MissingPartError as error:
     assert without([*others, missing], script) == sentence(name, "learning") + "\n"
 
 
+def test_tab_completes_what_is_imported_later_too():
+    script = """
+names = dir(dl)
+print(names == sorted(dl.__all__), {"infer", "Prior", "verify"} <= set(names))
+"""
+    assert without([], script) == "True True\n"
+
+
 def test_what_no_extra_brings_stays_as_it_is():
     with pytest.raises(ModuleNotFoundError, match="no_such_module"), needs("learning"):
         import no_such_module  # noqa: F401

@@ -71,3 +71,8 @@ def __getattr__(name: str) -> Any:
     part, module = _IMPORTED_LATER[name]
     with needs(part):
         return getattr(import_module(f"{__name__}.{module}"), name)
+
+
+def __dir__() -> list[str]:
+    """Return the public names, so that Tab completes those that are imported later, too."""
+    return __all__
