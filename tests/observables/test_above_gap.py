@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 import arithmetics
 from disorder_landscape import Nanowire
 from disorder_landscape.model import hamiltonian as h
-from disorder_landscape.solver import compiled, kwant_reference
+from disorder_landscape.solver import compiled, compiled_green, kwant_reference
 from random_wires import fields, mus, random_wire, seeds
 
 hot_energies = st.floats(0.1200001, 0.6)
@@ -38,7 +38,7 @@ def dense_conductance(wire, mu, B, omega):
     for site, V in enumerate(wire.potential_with_barriers):
         block = slice(4 * site, 4 * site + 4)
         H[block, block] = uniform + V * h.TAU_Z
-    sigma = compiled.lead_self_energies(wire, B, np.array([omega]))[0]
+    sigma = compiled_green.lead_self_energies(wire, B, np.array([omega]))[0]
     roots = []
     for lead, site in ((0, 0), (1, n - 1)):
         for charge in (0, 1):

@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 import arithmetics
 from disorder_landscape import Nanowire, conductance, topological_visibility
 from disorder_landscape.model import hamiltonian
-from disorder_landscape.solver import compiled, kwant_reference
+from disorder_landscape.solver import compiled, compiled_green, kwant_reference
 from random_wires import energies, fields, mus, random_wire, seeds
 
 
@@ -77,7 +77,7 @@ def test_lead_self_energies_are_those_of_kwant(alpha, B, lead_mu):
     wire = Nanowire(np.zeros(2), alpha=alpha, lead_mu=lead_mu)
     system = kwant_reference.build_system(wire)
     for omega in (0.0, 0.03):
-        sigma = compiled.lead_self_energies(wire, B, np.array([omega]))[0]
+        sigma = compiled_green.lead_self_energies(wire, B, np.array([omega]))[0]
         for lead in (0, 1):
             expected = system.leads[lead].selfenergy(omega, params={"B": B})
             ours = np.zeros((4, 4), dtype=complex)
@@ -214,7 +214,7 @@ def test_self_energies_hold_at_band_edges_and_crossings(B, lead_alpha, off):
     lowest = 2 * t - 2 * np.hypot(t, s)
     for edge in (zeeman, -zeeman, 4 * t + zeeman, 4 * t - zeeman, lowest, 4 * t - lowest):
         wire = Nanowire(np.zeros(2), lead_alpha=lead_alpha, lead_mu=edge + off)
-        sigma = compiled.lead_self_energies(wire, B, np.zeros(1))[0, 1, 0]
+        sigma = compiled_green.lead_self_energies(wire, B, np.zeros(1))[0, 1, 0]
         T = np.array([[-t, -s], [s, -t]])
         onsite = (2 * t - wire.lead_mu) * np.eye(2) + zeeman * np.array([[0, 1], [1, 0]])
         expected = T @ np.linalg.inv(-onsite - sigma) @ T.T

@@ -9,7 +9,7 @@ from disorder_landscape import ArgumentError, Nanowire, local_density_of_states,
 from disorder_landscape.model.hamiltonian import onsite, wire_hamiltonian
 from disorder_landscape.model.parameters import BOLTZMANN
 from disorder_landscape.observables import density_of_states
-from disorder_landscape.solver import compiled
+from disorder_landscape.solver import compiled_green
 from disorder_landscape.solver.kwant_reference import build_system, kwant
 from disorder_landscape.solver.lead_continuation import continued_self_energies
 
@@ -23,7 +23,7 @@ def dense(wire, mu, B, energy, theta):
     n = wire.sites
     above = energy + 1e-300j
     M = energy * np.eye(4 * n) - wire_hamiltonian(wire, mu, B, above, theta)
-    sigma = compiled.lead_self_energies(wire, B, np.array([energy]), theta)[0]
+    sigma = compiled_green.lead_self_energies(wire, B, np.array([energy]), theta)[0]
     for end, site in ((0, 0), (1, n - 1)):
         for charge in range(2):
             own = slice(4 * site + 2 * charge, 4 * site + 2 * charge + 2)
@@ -101,7 +101,7 @@ def test_a_level_without_width_is_as_wide_as_the_temperature():
 def test_continued_self_energies_meet_those_on_the_real_axis():
     energies = np.array([-0.3, -0.05, 0.02, 0.11])
     for theta, B in ((0.0, 0.0), (0.0, 0.7), (0.6, 0.7)):
-        real = compiled.lead_self_energies(WIRE, B, energies, theta)
+        real = compiled_green.lead_self_energies(WIRE, B, energies, theta)
         near = continued_self_energies(WIRE, B, energies + 1e-8j, theta)
         np.testing.assert_allclose(near, real, atol=1e-7)
 

@@ -18,7 +18,7 @@ from disorder_landscape.inference.problem.observation import TRUSTED
 from disorder_landscape.model.disorder import disorder_realization
 from disorder_landscape.model.parameters import BOLTZMANN
 from disorder_landscape.model.quantities import AXES, CONDUCTANCES
-from disorder_landscape.solver import compiled, gradients
+from disorder_landscape.solver import compiled, compiled_gradients, gradients
 from disorder_landscape.solver.quadrature import thermal_quadrature
 from random_wires import fields, mus, random_wire, seeds
 
@@ -290,7 +290,7 @@ def test_above_one_kelvin_they_are_differences():
 def test_sets_without_a_model_have_differences(monkeypatch):
     wire = random_wire(9, sites=4)
     expected_of = conductance_gradient(wire, 0.2, [0.1, 0.3], 0.02)
-    core_of = compiled.thermal_gradient
+    core_of = compiled_gradients.thermal_gradient
 
     def none_at_first(*arguments):
         found = core_of(*arguments)
@@ -299,7 +299,7 @@ def test_sets_without_a_model_have_differences(monkeypatch):
         found.error[:, 0] = found.difference[:, 0] = np.inf
         return found
 
-    monkeypatch.setattr(compiled, "thermal_gradient", none_at_first)
+    monkeypatch.setattr(compiled_gradients, "thermal_gradient", none_at_first)
     found = conductance_gradient(wire, 0.2, [0.1, 0.3], 0.02)
     assert found.energies[0, 0] > expected_of.energies[0, 0]
     for name in set(found.data_vars) - {"error", "energies", "gradient_error"}:

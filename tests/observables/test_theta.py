@@ -14,7 +14,13 @@ from scipy.optimize import brentq
 import arithmetics
 from disorder_landscape import ArgumentError, Nanowire, conductance, topological_visibility
 from disorder_landscape.model import hamiltonian
-from disorder_landscape.solver import compiled, kwant_reference, routes, tilted_average
+from disorder_landscape.solver import (
+    compiled,
+    compiled_green,
+    kwant_reference,
+    routes,
+    tilted_average,
+)
 from disorder_landscape.solver.quadrature import thermal_quadrature
 from disorder_landscape.solver.routes import thermal_average
 from random_wires import energies, fields, mus, random_wire, seeds
@@ -63,7 +69,7 @@ def test_lead_self_energies_repeat_themselves_and_are_those_of_kwant(seed, theta
         lead_mu=rng.choice([25.0, rng.uniform(0.2, 40)]),
     )
     omega, B = np.array([0.0, 0.03, 0.5]), rng.uniform(-0.8, 0.8)
-    sigma = compiled.lead_self_energies(wire, B, omega, theta)
+    sigma = compiled_green.lead_self_energies(wire, B, omega, theta)
     leads = kwant_reference.build_system(wire, theta).leads
     onsite, hop = hamiltonian.lead_onsite(wire, B, theta), hamiltonian.lead_hopping(wire)
     for (k, energy), lead in product(enumerate(omega), (0, 1)):
@@ -74,8 +80,8 @@ def test_lead_self_energies_repeat_themselves_and_are_those_of_kwant(seed, theta
         again = h @ np.linalg.solve(energy * np.eye(4) - onsite - ours, h.conj().T)
         assert_allclose(ours, again, atol=1e-9)
         assert np.linalg.eigvalsh(1j * (ours - ours.conj().T)).min() > -1e-9  # it only absorbs
-    straight = compiled.lead_self_energies(wire, B, omega, 1e-300)
-    assert_allclose(straight, compiled.lead_self_energies(wire, B, omega), atol=1e-8)
+    straight = compiled_green.lead_self_energies(wire, B, omega, 1e-300)
+    assert_allclose(straight, compiled_green.lead_self_energies(wire, B, omega), atol=1e-8)
 
 
 @pytest.mark.parametrize("theta", [0.0, 0.4, -2.0])
@@ -286,7 +292,7 @@ def test_self_energies_solve_their_equation_at_any_field(lead_alpha, B):
     T = np.array([[-t, -s], [s, -t]])
     zeeman = hamiltonian.zeeman(wire.lead_zeeman_per_tesla * B, theta)[:2, :2]
     onsite = (2 * t - wire.lead_mu) * np.eye(2) + zeeman
-    found = compiled.lead_self_energies(wire, B, omega, theta)[:, :, 0]
+    found = compiled_green.lead_self_energies(wire, B, omega, theta)[:, :, 0]
     for E, pair in zip(omega, found, strict=True):
         for sigma, hop in zip(pair, (T.T, T), strict=True):
             expected = hop @ np.linalg.inv(E * np.eye(2) - onsite - sigma) @ hop.T
@@ -319,7 +325,10 @@ def test_two_sites_without_a_parent_along_the_spin_orbit_field():
 def test_a_field_that_rounding_hides_at_the_crossing_of_spins_is_none():
     """The roots are all but twofold: rounding decided on the modes, and G_LL was off by 0.1."""
     wire = Nanowire(np.zeros(2), lead_mu=0.0)
-    along = compiled.lead_self_energies(wire, 0.0, np.zeros(1), np.pi / 2)
+    along = compiled_green.lead_self_energies(wire, 0.0, np.zeros(1), np.pi / 2)
     assert_allclose(
-        compiled.lead_self_energies(wire, 2e-11, np.zeros(1), np.pi / 2), along, rtol=0, atol=1e-8
+        compiled_green.lead_self_energies(wire, 2e-11, np.zeros(1), np.pi / 2),
+        along,
+        rtol=0,
+        atol=1e-8,
     )

@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import arithmetics
 from disorder_landscape.model import hamiltonian
-from disorder_landscape.solver import compiled, kwant_reference, variants
+from disorder_landscape.solver import compiled, compiled_green, kwant_reference, variants
 from random_wires import energies, fields, mus, random_wire, seeds
 
 angles = st.one_of(st.floats(-3.2, 3.2), st.sampled_from([0.0, np.pi / 2, np.pi, 1e-7]))
@@ -62,7 +62,7 @@ def test_pivoting_changes_nothing_above_the_gap_either(seed, mu, B, omega, theta
 def test_the_ends_are_those_of_the_inverted_hamiltonian(theta):
     wire, z = random_wire(1, sites=30), np.array([0.02 + 0.003j, 0.05 + 0.001j])
     B, mu = np.array([0.5]), np.array([0.2])
-    found = compiled.isolated_ends([wire], mu, B, z, theta)[0, 0, 0]
+    found = compiled_green.isolated_ends([wire], mu, B, z, theta)[0, 0, 0]
     phi = np.arctan2(wire.spin_orbit_hopping, wire.hopping) * (wire.sites - 1)
     turn = np.kron(np.eye(2), [[np.cos(phi), -np.sin(phi)], [np.sin(phi), np.cos(phi)]])
     U = np.kron([[1, 0], [0, 0]], np.eye(4)) + np.kron([[0, 0], [0, 1]], turn)
@@ -84,8 +84,10 @@ def test_every_variant_gives_the_same(monkeypatch):
         results[name] = (
             arithmetics.tilted_conductance(wires, mu, B, omega, theta),
             compiled.reflection_determinant(wires, mu, B, theta),
-            compiled.isolated_ends(wires, mu, B, z, theta),
-            np.array([compiled.lead_self_energies(wires[0], field, omega, theta) for field in B]),
+            compiled_green.isolated_ends(wires, mu, B, z, theta),
+            np.array(
+                [compiled_green.lead_self_energies(wires[0], field, omega, theta) for field in B]
+            ),
         )
     for name, found in results.items():
         for ours, best in zip(found, results[variants.supported()[-1]], strict=True):

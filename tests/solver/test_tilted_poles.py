@@ -12,7 +12,7 @@ from scipy.linalg import eigvals
 from disorder_landscape import Nanowire
 from disorder_landscape.model import hamiltonian
 from disorder_landscape.model.parameters import BOLTZMANN
-from disorder_landscape.solver import compiled, tilted_average
+from disorder_landscape.solver import compiled, compiled_green, tilted_average
 from random_wires import fields, mus, random_wire, seeds
 
 core = compiled.core
@@ -22,7 +22,7 @@ angles = st.sampled_from([1e-3, 0.4, np.pi / 2, -2.0])
 
 
 def ends(wire, mu, B, theta, z):
-    return compiled.isolated_ends([wire], np.array([mu]), np.array([B]), z, theta)[0, 0, 0]
+    return compiled_green.isolated_ends([wire], np.array([mu]), np.array([B]), z, theta)[0, 0, 0]
 
 
 def levels(wire, mu, B, theta, window, count=10):
@@ -77,7 +77,7 @@ def test_poles_without_a_parent_are_eigenvalues(theta, barrier):
     z, residues, average = poles_of(wire, 0.3, 0.7, theta)
     H = hamiltonian.wire_hamiltonian(wire, 0.3, 0.7, 0.0, theta)
     two = average.window * np.array([-1, 1]) / np.sqrt(2)
-    below, above = compiled.lead_self_energies(wire, 0.7, two, theta)
+    below, above = compiled_green.lead_self_energies(wire, 0.7, two, theta)
     slope = (above - below) / (two[1] - two[0])
     K, N = H.astype(complex), np.eye(len(H), dtype=complex)
     for lead, charge in np.ndindex(2, 2):

@@ -17,7 +17,7 @@ from disorder_landscape.model.parameters import BOLTZMANN, FloatArray, Nanowire
 from disorder_landscape.model.quantities import with_units
 from disorder_landscape.model.ranges import checked_temperature
 from disorder_landscape.observables.grids import checked_mu_and_B
-from disorder_landscape.solver import compiled
+from disorder_landscape.solver import compiled_green
 from disorder_landscape.solver.compiled import GROWTH_LIMIT
 from disorder_landscape.solver.lead_continuation import continued_self_energies
 
@@ -124,7 +124,7 @@ def _leads(wire: Nanowire, B: float, z: ComplexArray, theta: float) -> ComplexAr
     """Return Σ of the leads, shape (z, lead, charge, 2, 2)."""
     if z[0].imag > 0:
         return continued_self_energies(wire, B, z, theta)
-    return compiled.lead_self_energies(wire, B, np.ascontiguousarray(z.real), theta)
+    return compiled_green.lead_self_energies(wire, B, np.ascontiguousarray(z.real), theta)
 
 
 def _green(
@@ -136,10 +136,10 @@ def _green(
     theta: float,
 ) -> ComplexArray:
     """Return G summed over the spin, shape (mu, z, site, 2); NARROWEST above where digits fail."""
-    G, growth = compiled.local_green(wire, mu, np.array([B]), z, sigma[None], theta)
+    G, growth = compiled_green.local_green(wire, mu, np.array([B]), z, sigma[None], theta)
     for m, e in np.argwhere(~(growth[:, 0] < GROWTH_LIMIT)):
         above, some = z[[e]] + 1j * NARROWEST, slice(m, m + 1)
-        G[some, 0, e] = compiled.local_green(
+        G[some, 0, e] = compiled_green.local_green(
             wire, mu[some], np.array([B]), above, sigma[None, [e]], theta
         )[0][:, 0, 0]
     return G[:, 0]

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from disorder_landscape.model.parameters import BOHR_MAGNETON, BOLTZMANN, FloatArray, Nanowire
-from disorder_landscape.solver import compiled, routes
+from disorder_landscape.solver import compiled, compiled_gradients, routes
 from disorder_landscape.solver.difference_gradient import difference
 from disorder_landscape.solver.lead_slopes import rotated_lead_slopes
 from disorder_landscape.solver.quadrature import thermal_quadrature
@@ -108,7 +108,9 @@ def at_zero(
     biases[which, sign] = np.arange(bias.size)
     slopes = rotated_lead_slopes(wire, B, omega)
     slopes[:, :, 0] *= wire.lead_zeeman_per_tesla
-    by_V, others = compiled.conductance_gradient(wire, mu, B, omega, biases, slopes, growth_limit)
+    by_V, others = compiled_gradients.conductance_gradient(
+        wire, mu, B, omega, biases, slopes, growth_limit
+    )
     by = {"V": np.moveaxis(by_V, 0, 3)}
     by |= {name: np.moveaxis(others[:, k], 0, 3) for k, name in enumerate(("mu", "B", "alpha"))}
     G = compiled.bare_conductance([wire], mu, B, omega)[0][:, :, which, sign]
@@ -252,7 +254,7 @@ def _of_the_core(
     """
     energies = routes.thermal_window(bias, temperature) * np.sin(np.pi * (np.arange(4) + 0.5) / 8)
     slopes = np.ascontiguousarray(rotated_lead_slopes(wire, B, energies))
-    raw = compiled.thermal_gradient(wire, mu, B, bias, temperature, energies, slopes)
+    raw = compiled_gradients.thermal_gradient(wire, mu, B, bias, temperature, energies, slopes)
     of = dict(zip(CORE_ORDER, np.moveaxis(raw.others, -1, 0), strict=True))
     follows = 1.0 if wire.lead_g is None else 0.0
     field = B[:, None, None]

@@ -6,7 +6,7 @@ import numpy as np
 
 from disorder_landscape.model.hamiltonian import PAULI, ComplexArray
 from disorder_landscape.model.parameters import FloatArray, Nanowire
-from disorder_landscape.solver.compiled import in_rotated_frame, lead_self_energies
+from disorder_landscape.solver.compiled_green import in_rotated_frame, lead_self_energies
 
 
 def lead_slopes(
@@ -25,7 +25,7 @@ def lead_slopes(
     omega : array, shape (energy,)
         Energies in meV.
     sigma : array, shape (B, energy, lead, charge, 2, 2)
-        What `compiled.lead_self_energies` gives for them, in meV.
+        What `compiled_green.lead_self_energies` gives for them, in meV.
 
     Returns
     -------

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from disorder_landscape.model.hamiltonian import ComplexArray
 from disorder_landscape.model.parameters import BOLTZMANN, FloatArray, Nanowire
-from disorder_landscape.solver import compiled
+from disorder_landscape.solver import compiled, compiled_green
 from disorder_landscape.solver.compiled import core
 
 NODES = (10, 16, 24)
@@ -77,8 +77,8 @@ class _Average:
         self.smooth = core.thermal_weights(bias, kT, SMOOTH)
         self.check = core.interpolation_weights(np.concatenate([at_checks, -at_checks]), SMOOTH)
         two = window * np.array([-1, 1]) / np.sqrt(2)
-        sigma = compiled.lead_self_energies(wire, B, two, theta)
-        below, above = _on_the_ends(compiled.in_rotated_frame(wire, sigma))
+        sigma = compiled_green.lead_self_energies(wire, B, two, theta)
+        below, above = _on_the_ends(compiled_green.in_rotated_frame(wire, sigma))
         self.slope = (above - below) / (two[1] - two[0])
         self.sigma = below - two[0] * self.slope
 
@@ -89,7 +89,7 @@ class _Average:
         """
         z = _above_axis(self.window, nodes)
         wires, theta = [self.wire], self.theta
-        F = compiled.isolated_ends(wires, mu, self.B, z, theta)[0, 0]
+        F = compiled_green.isolated_ends(wires, mu, self.B, z, theta)[0, 0]
         bare = compiled.bare_conductance(wires, mu, self.B, self.real, theta)[0, :, 0]
         poles, residues = core.tilted_poles(
             z, F, self.sigma, self.slope, self.wire.rotated_hopping, self.window
