@@ -15,6 +15,7 @@ from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.chain import evaluation
 from disorder_landscape.config import Config
 from disorder_landscape.dataset.store import provenance, read_dataset, write_dataset
+from disorder_landscape.files import check_writable
 from disorder_landscape.model.quantities import DRAWN
 from disorder_landscape.pictures import write_picture
 from disorder_landscape.runs import FIVE, Run, preset_run
@@ -83,17 +84,20 @@ def figure_script(
     name = "_".join(script.split("_")[:2])
     options = _parse(script, description, preset, arguments)
     try:
+        paths = {ending: options.output / f"{name}.{ending}" for ending in ("pdf", "png", "nc")}
+        for one in paths.values():
+            check_writable("output", one)
         request = Request(preset_run(options.preset, model=model), options.evaluation)
         drawn = data(request)
         command = f"python paper_figures/{script} --preset {options.preset}"
         if options.evaluation is not None:
             command += f" --evaluation {options.evaluation}"
         attrs = {**provenance(command), "preset": options.preset}
-        write_dataset(drawn, options.output / f"{name}.nc", attrs)
         with paper_style():
             figure = draw(drawn)
             for ending in ("pdf", "png"):
-                _save(figure, options.output / f"{name}.{ending}")
+                _save(figure, paths[ending])
+        write_dataset(drawn, paths["nc"], attrs)  # last: the report takes its command from it
     except ArgumentError as error:
         print(f"{script}: {error}", file=sys.stderr)
         sys.exit(2)

@@ -21,6 +21,9 @@ cores=$(getconf _NPROCESSORS_ONLN)
 wheel=build/core/wheel
 log=build/core/log
 
+# uv keeps what it fetches at home; where that cannot be written, it is kept here.
+cache=${UV_CACHE_DIR:-${XDG_CACHE_HOME:-${HOME:-/nowhere}/.cache}/uv}
+if ! mkdir -p "$cache" 2>/dev/null || [ ! -w "$cache" ]; then export UV_CACHE_DIR="$PWD/build/cache/uv"; fi
 uv() { .venv/bin/uv pip install --python .venv/bin/python "$@"; }
 lock() { uv --quiet --require-hashes --requirements "$1"; }
 
@@ -35,6 +38,11 @@ compiler() {
       return
     fi
   done
+  case $PWD in
+    *[[:space:]]*)
+      echo "set-up: there is no C++20 compiler (apt-get install g++), and Zig's needs a path without spaces" >&2
+      exit 1 ;;
+  esac
   if ! .venv/bin/python -c 'import ziglang' 2>/dev/null; then
     echo "set-up: there is no C++20 compiler (g++ or clang++), so Zig's is fetched"
     lock requirements-zig.lock

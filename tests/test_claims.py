@@ -33,7 +33,7 @@ from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.learning.scaling import LabelScaler
 from disorder_landscape.model.disorder import disorder_realization
 from disorder_landscape.observables import topological_overlap
-from disorder_landscape.runs import REPOSITORY
+from disorder_landscape.runs import REPOSITORY, presets
 from disorder_landscape.studies.rows import as_text, write_rows
 from disorder_landscape.studies.study import study_names
 from disorder_landscape.studies.trainings_table import Result
@@ -109,15 +109,19 @@ def test_every_command_of_a_value_that_is_there_exists():
             assert EXISTS[program](words), found.command
 
 
-def _make_exists(words):
+def make_exists(words):
     makefile = (REPOSITORY / "Makefile").read_text("utf-8")
     targets = set(re.findall(r"^([a-z-]+):", makefile, re.MULTILINE))
     scripts = (REPOSITORY / "paper_figures").glob("figure_*.py")
     targets |= {"figure-" + script.stem.split("_")[1] for script in scripts}
     given = dict(word.split("=") for word in words[1:])
+    drawn = set(presets())
+    configs = {path.stem for path in (REPOSITORY / "configs").glob("*.toml")}
     allowed = {
-        "PRESET": {path.stem for path in (REPOSITORY / "configs").glob("*.toml")},
+        "PRESET": drawn if words[0].startswith("figure") else configs,
+        "STUDY": set(study_names()),
         "ONLY": {one.id for one in ALL},
+        "STORE": {"1"},
     }
     return words[0] in targets and all(value in allowed[name] for name, value in given.items())
 
@@ -135,7 +139,7 @@ def _command_exists(words):
 
 
 EXISTS = {
-    "make": _make_exists,
+    "make": make_exists,
     "pytest": _tests_exist,
     "landscape": _command_exists,
 }

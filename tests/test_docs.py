@@ -8,6 +8,7 @@ from dataclasses import fields
 
 from disorder_landscape.model.parameters import Nanowire
 from disorder_landscape.runs import REPOSITORY
+from test_claims import make_exists
 
 sys.path.insert(0, str(REPOSITORY / "docs" / "extensions"))  # as docs/conf.py does
 
@@ -34,6 +35,20 @@ def test_every_parameter_of_a_wire_is_listed_with_its_range():
     assert rows[2].endswith("| 10 | 0.1 to 100 nm |")
     assert "V_Barrier on the first and on the last site" in rows[6]
     assert "| 15, 15 | -1,000 to 1,000 meV |" in rows[6]
+
+
+def test_every_target_of_make_that_is_named_exists():
+    pages = [*(REPOSITORY / "docs").rglob("*.md"), *REPOSITORY.glob("*.md")]
+    named = {
+        command for page in pages for command in re.findall(r"`make ([^`<]+)`", page.read_text())
+    }
+    assert len(named) > 10
+    placeholders = {"ONLY=id": "", "STUDY=NAME": "", "figure-NAME": "figure-4"}
+    words = [
+        " ".join(placeholders.get(word, word) for word in one.split()).split()
+        for one in sorted(named)
+    ]
+    assert [one for one in words if not make_exists(one)] == []
 
 
 def test_every_package_has_a_licence_and_none_that_is_needed_is_under_the_gpl():

@@ -4,6 +4,7 @@ Never a traceback, a warning or a file left behind by what is refused, nor a wai
 What would take long is left out once all has been checked (`cheap`).
 """
 
+import dataclasses
 import io
 import json
 import re
@@ -12,7 +13,6 @@ import sys
 import tempfile
 import tomllib
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 
 import h5py
@@ -29,6 +29,8 @@ import disorder_landscape.learning.model
 import disorder_landscape.learning.training
 import disorder_landscape.studies.runner
 from command_line import landscape
+from disorder_landscape import Prior
+from disorder_landscape.cli import app
 from disorder_landscape.files import write_json
 from disorder_landscape.model.quantities import CONDUCTANCES
 from disorder_landscape.runs import REPOSITORY
@@ -74,7 +76,7 @@ def safe(text):
     return all(char.isprintable() or char == "\t" for char in text)
 
 
-@dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True)
 class Command:
     """A command: words, and files by their names, as text, bytes or a Dataset."""
 
@@ -83,7 +85,13 @@ class Command:
 
 
 def commands(name, arguments, options, files=None, usual=None):
-    """Draw a command: arguments, up to three options other than usual, and its files."""
+    """Draw a command: arguments, up to three options other than usual, and its files.
+
+    All options that it has must be among those that are drawn.
+    """
+    parameters = typer.main.get_command(app).commands[name].params
+    names = {one.opts[0] for one in parameters if one.param_type_name == "option"}
+    assert set(options) == names, set(options) ^ names
 
     @st.composite
     def one(draw):
@@ -100,6 +108,20 @@ def commands(name, arguments, options, files=None, usual=None):
         return Command((name, *words), {} if files is None else draw(files))
 
     return one()
+
+
+def written_by(command):
+    """Return the netCDF files that a command has written where it said it would, at least one.
+
+    None where it only prints what jobs would do, or does a share of few tasks.
+    """
+    output = Path([word for word in command.words if word.startswith("--output=")][-1][9:])
+    there = sorted(output.glob("*.nc")) if output.is_dir() else [output]
+    does_less = "--dry-run" in command.words or any(
+        word.startswith("--share=") and word != "--share=1/1" for word in command.words
+    )
+    assert there or does_less
+    return there
 
 
 def snapshot(folder):
@@ -134,7 +156,7 @@ def cheap(monkeypatch, trained_folder):
 def refused_or_done(monkeypatch, capsys, cheap, trained_folder):
     """Return a function that carries a command out and requires what is promised."""
 
-    def check(command, wanted=lambda folder: None):
+    def check(command, wanted=lambda command: None):
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
             monkeypatch.chdir(folder)
@@ -146,7 +168,7 @@ def refused_or_done(monkeypatch, capsys, cheap, trained_folder):
             assert "Traceback" not in err
             assert "Warning" not in err
             if code in (0, None):
-                wanted(folder)
+                wanted(command)
                 return "done", out
             err = BAR.sub("", err).lstrip()
             is_usage = err.startswith("Usage: ") and err.count("Error: ") == 1
@@ -293,8 +315,8 @@ odd_bytes = st.one_of(st.sampled_from(sorted(ODD_BYTES)).map(ODD_BYTES.get), st.
 SMALL = {"--sites": "6", "--B": "0:0.8:2", "--bias": "-0.02,0.02", "--output": "new.nc"}
 
 
-def _simulated(folder):
-    for path in folder.glob("new.nc"):
+def _simulated(command):
+    for path in written_by(command):
         with xr.open_dataset(path, engine="h5netcdf") as written:
             for name in (*CONDUCTANCES, "T_IV", "potential"):
                 assert np.isfinite(written[name]).all()
@@ -311,6 +333,9 @@ WIRE_OPTIONS = {
     "--delta0": texts("0.12", "0.001", "10", "0"),
     "--critical-field": texts("1", "0.5", "inf", "0"),
     "--barrier": texts("15", "0,30", "-5,5", "1,2,3", "15,", "1e3,-1e3"),
+    "--mass": texts("0.03", "0.01", "10", "0"),
+    "--lattice": texts("10", "1", "100", "0"),
+    "--lead-mu": texts("25", "0", "1000", "-5"),
     "--theta": texts("0", "30", "90", "360", "361"),
     "--temperature": texts("0", "0.05", "0.2", "10", "11"),
     "--output": st.sampled_from(NEW_FILES),
@@ -327,6 +352,8 @@ def test_simulate_writes_or_refuses(count, refused_or_done):
         "--B": texts("0", "0.1,0.5", "0:0.8:2", "-1:5:3"),
         "--bias": texts("0", "-0.04:0.04:3", "0.11", "0.12"),
         "--solver": texts("fast", "Fast"),
+        "--dissipation": texts("0", "0.01", "1", "-1"),
+        "--parent-dissipation": texts("0", "0.01", "1", "-1"),
     }
     one = commands("simulate", st.just([]), options, POTENTIALS, SMALL)
     tried(count, one, lambda command: refused_or_done(command, _simulated))
@@ -343,8 +370,8 @@ def test_modes_writes_or_refuses(count, refused_or_done):
     }
     usual = {"--sites": "6", "--count": "1", "--energy": "-0.1:0.1:3", "--output": "new.nc"}
 
-    def wanted(folder):
-        for path in folder.glob("new.nc"):
+    def wanted(command):
+        for path in written_by(command):
             with xr.open_dataset(path, engine="h5netcdf") as written:
                 for name in ("level", "wave_function", "LDOS_electron", "overlap"):
                     assert np.isfinite(written[name]).all()
@@ -481,6 +508,7 @@ ELSEWHERE = {
     "--site": st.sampled_from(["site.toml", "site.toml", "nowhere.toml", "folder", "", "empty"]),
     "--dry-run": st.just(True),
     "--workers": texts("1", "0", "-1", "1025").filter(lambda text: not starts_processes(text)),
+    "--scheduler": st.sampled_from(["tcp://localhost:1", "x", ""]),
 }
 CONFIGS = st.sampled_from(["run.toml"] * 12 + ["nowhere.toml", "folder", "", "empty", *NEW_FILES])
 BUILDS = st.sampled_from(["build", "build", "folder", "empty", "new/build", *NEW_FILES])
@@ -493,8 +521,8 @@ def run_files(others=RUN_KEYS):
     return st.fixed_dictionaries({"run.toml": run, "site.toml": SITES})
 
 
-def _generated(folder):
-    for path in folder.rglob("shard-*.nc"):
+def _generated(command):
+    for path in Path().rglob("shard-*.nc"):
         with xr.open_dataset(path, engine="h5netcdf") as written:
             for name in (*CONDUCTANCES, "potential", "components", "alpha"):
                 assert np.isfinite(written[name]).all()
@@ -649,12 +677,16 @@ def test_predict_writes_or_refuses(count, refused_or_done):
     usual = {"--model": "model", "--output": "new.nc"}
     one = commands("predict", which, options, files, usual)
 
-    def wanted(folder):
-        for path in folder.glob("new.nc"):
+    def wanted(command):
+        for path in written_by(command):
             with xr.open_dataset(path, engine="h5netcdf") as written:
                 assert np.isfinite(written["potential"]).all()
 
     tried(count, one, lambda command: refused_or_done(command, wanted))
+
+
+PRIOR = {"": {"components": 2, "sites": 10}}
+PRIOR_KEYS = [field.name for field in dataclasses.fields(Prior)]
 
 
 @argument_sets(8)
@@ -669,6 +701,7 @@ def test_infer_writes_or_refuses(count, refused_or_done):
     lists += [[], [""], ["folder"], ["nowhere.nc"], ["a" * 300], ["wire.nc", "nowhere.nc"]]
     options = {
         "--model": MODELS,
+        "--prior": st.sampled_from(["prior.toml"] * 3 + ["nowhere.toml", "folder", "", "empty"]),
         "--output": st.sampled_from(NEW_FILES),
         "--noise": texts("0", "0.01", "0.01,0.01,0.002,0.002", "1", "2", "0.1,0.1", "-0.1"),
         "--from-prior": st.just(True),
@@ -678,12 +711,17 @@ def test_infer_writes_or_refuses(count, refused_or_done):
         "--plot": st.sampled_from(["new.png", "new.html", *NEW_FILES]),
         **ELSEWHERE,
     }
-    usual = {"--model": "model", "--output": "new.nc", "--samples": "4", "--workers": "1"}
-    files = st.builds(lambda files, site: files | {"site.toml": site}, files, SITES)
+    usual = {"--model": "model", "--output": "new.nc", "--samples": "4"}
+    files = st.builds(
+        lambda files, site, prior: files | {"site.toml": site, "prior.toml": prior},
+        files,
+        SITES,
+        tomls(PRIOR, {"": PRIOR_KEYS}, sections=False),
+    )
     one = commands("infer", st.sampled_from(lists), options, files, usual)
 
-    def wanted(folder):
-        for path in [*folder.glob("new.nc"), *folder.glob("new/*.nc")]:
+    def wanted(command):
+        for path in written_by(command):
             with xr.open_dataset(path, engine="h5netcdf") as written:
                 assert np.isfinite(written["potential"]).all()
                 assert written.attrs["verdict"]
@@ -748,12 +786,13 @@ def test_study_begins_or_refuses(count, refused_or_done):
     names = [["plan.toml"]] * 9 + [[name] for name in PLANS] + [[], [""], ["nowhere"], ["."]]
     names += [["nowhere.toml"], ["folder"], ["/"], ["../plan.toml"], ["a" * 300 + ".toml"]]
     options = {
+        "--list": st.just(True),
         "--output": st.sampled_from(["results", *NEW_FILES]),
         "--build": BUILDS,
         "--limit": texts("0", "1", "-1"),
         **ELSEWHERE,
     }
-    usual = {"--output": "results", "--workers": "1"}
+    usual = {"--output": "results"}
     one = commands("study", st.sampled_from(names), options, files, usual)
     tried(count, one, refused_or_done)
 
@@ -866,7 +905,7 @@ FOUND = {
     "long name of tables": (("study", "accuracy", "--output=" + "a" * 300), {}),
     "long name of a benchmark": (("bench", "--output=" + "a" * 300), {}),
     "long name of a site": (
-        ("generate", *RUN, "--executor=slurm", "--dry-run", "--site=" + "a" * 300),
+        ("generate", *RUN[:2], "--executor=slurm", "--dry-run", "--site=" + "a" * 300),
         run_of(),
     ),
     "no scheduler": (("generate", *RUN, "--executor=dask", "--scheduler="), run_of()),

@@ -17,7 +17,7 @@ from disorder_landscape.arguments import ArgumentError, require, shown
 
 CHECKSUM = "checksum"
 """Key of a JSON file, about all others."""
-_HOST = socket.gethostname()
+_HOST = socket.gethostname().replace("-", "_")  # a hyphen ends it in names of temporary files
 
 
 @contextmanager

@@ -17,6 +17,7 @@ from disorder_landscape.config import Config, DatasetConfig, load_config
 from disorder_landscape.learning.model_files import is_trained
 
 REPOSITORY = Path(__file__).resolve().parents[2]
+CONFIGS = REPOSITORY / "configs"
 SHIPPED = "shipped"
 FIVE, TEN = MODELS = "five_components_and_alpha", "ten_components"
 """The paper's two models, as they are named where they are shipped."""
@@ -90,6 +91,12 @@ def shipped_test_set(model: str) -> Path:
     return REPOSITORY / "data_small" / f"{model}_test.nc"
 
 
+def presets() -> list[str]:
+    """Return the names of the presets: those of configs/ that are of both models, and "shipped"."""
+    there = {path.stem for path in CONFIGS.glob("*.toml")} - {THIRTY}
+    return sorted({name.removesuffix(f"_{TEN}") for name in there} | {SHIPPED})
+
+
 def preset_run(preset: str, build: str | Path = "build", model: str = FIVE) -> Run:
     """Return a preset's run of one of the paper's two models.
 
@@ -108,18 +115,17 @@ def preset_run(preset: str, build: str | Path = "build", model: str = FIVE) -> R
     ArgumentError
         If there is no such preset.
     """
-    there = {path.stem for path in (REPOSITORY / "configs").glob("*.toml")}
-    presets = sorted({name.removesuffix(f"_{TEN}") for name in there - {THIRTY}})
-    must = f"be one of {', '.join([*presets, SHIPPED])}"
-    require(preset in (*presets, SHIPPED), "preset", must, f"it is '{preset}'")
+    must = f"be one of {', '.join(presets())}"
+    require(preset in presets(), "preset", must, f"it is '{preset}'")
+    there = {path.stem for path in CONFIGS.glob("*.toml")}
     name = preset if model == FIVE else f"{preset}_{model}"
     if name in there:
-        return open_run(REPOSITORY / "configs" / f"{name}.toml", build)
+        return open_run(CONFIGS / f"{name}.toml", build)
     from disorder_landscape.learning.model import load_model_config
 
     config = load_model_config(shipped_model(model))
     other = {preset, f"{preset}_{TEN}"} & there
     if other:
-        figures = load_config(REPOSITORY / "configs" / f"{other.pop()}.toml").figures
+        figures = load_config(CONFIGS / f"{other.pop()}.toml").figures
         config = config.model_copy(update={"figures": figures})
     return Run(model, config, Path(build) / SHIPPED / model, shipped=True)

@@ -59,6 +59,7 @@ def chosen_wire(
     both = "one of --potential and --seed at most"
     require(potential is None or seed is None, "potential", f"come with {both}", "both are given")
     drawn = seed is not None or not components
+    drawn = drawn and (potential is None or components is None)
     require(drawn, "components", "come with --seed, which draws them", "there is none")
     if potential is not None:
         V = read_potential(potential)

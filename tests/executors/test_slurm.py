@@ -14,6 +14,7 @@ import time
 import pytest
 from typer.testing import CliRunner
 
+import disorder_landscape.studies.study
 from disorder_landscape import ArgumentError
 from disorder_landscape.cli import app
 from disorder_landscape.executors import slurm
@@ -51,6 +52,13 @@ def test_a_script_runs_the_command_with_a_share(programs, tmp_path):
         "landscape generate --config 'a b.toml' --workers 1 --share $((SLURM_ARRAY_TASK_ID + 0))/8"
     )
     assert subprocess.run(["/bin/bash", "-n"], input=text, text=True, check=False).returncode == 0
+
+
+def test_values_with_blanks_are_quoted_as_sbatch_reads_them(programs, tmp_path):
+    site = SITE.model_copy(update={"options": {"comment": 'two "words" \\'}})
+    (text,) = slurm.scripts(["generate"], site, 2, tmp_path / "a b")
+    assert f'#SBATCH --output="{tmp_path}/a b/%A_%a.log"\n' in text
+    assert '#SBATCH --comment="two \\"words\\" \\\\"\n' in text
 
 
 def test_arrays_are_split_under_the_limit_of_the_site(programs, tmp_path):
@@ -139,6 +147,11 @@ def test_the_command_line_asks_for_what_it_needs(tmp_path):
         (["--dry-run"], "dry-run must be left out without --executor slurm"),
         (["--site", "a.toml", "--executor", "dask"], "site must be left out without --executor"),
         (["--scheduler", "tcp://host:8786"], "scheduler must be left out without --executor dask"),
+        (
+            ["--workers", "2", "--executor", "slurm"],
+            "workers must be left out with --executor slurm",
+        ),
+        (["--share", "1/1", "--executor", "slurm"], "share must be left out with --executor slurm"),
     ):
         told = CliRunner().invoke(app, [*config, *options])
         assert isinstance(told.exception, ArgumentError)
@@ -146,10 +159,34 @@ def test_the_command_line_asks_for_what_it_needs(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("options", [["--share", "1/2"], ["--executor", "slurm"]])
-def test_one_result_is_not_shared_out(options):
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--share", "1/2"], "output must be a folder"),
+        (["--executor", "slurm"], "output must be a folder"),
+        (["--workers", "2"], "workers must be left out for one measurement, which takes all cores"),
+    ],
+)
+def test_one_result_is_not_shared_out(options, said):
     told = CliRunner().invoke(app, ["infer", "one.nc", "-o", "result.nc", *options])
-    assert "output must be a folder" in str(told.exception)
+    assert said in str(told.exception)
+
+
+@pytest.mark.parametrize("option", ["--limit=0", "--share=1/2", "--workers=2", "--dry-run"])
+def test_a_list_of_studies_takes_no_options_of_a_run(option):
+    told = CliRunner().invoke(app, ["study", "--list", option])
+    assert "must be left out with --list" in str(told.exception)
+
+
+def test_a_limit_is_refused_where_jobs_would_not_have_it():
+    told = CliRunner().invoke(app, ["study", "noise", "--limit", "1", "--executor", "slurm"])
+    assert "limit must be left out with --executor slurm" in str(told.exception)
+
+
+def test_a_study_needs_the_plans_of_the_repository(monkeypatch, tmp_path):
+    monkeypatch.setattr(disorder_landscape.studies.study, "PLANS", tmp_path / "none")
+    told = CliRunner().invoke(app, ["study", "noise"])
+    assert "study must be carried out in a clone of the repository" in str(told.exception)
 
 
 @pytest.mark.parametrize(

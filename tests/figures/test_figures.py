@@ -19,7 +19,7 @@ from command import Request
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.config import WireConfig
 from disorder_landscape.model.disorder import cosine_components
-from disorder_landscape.runs import preset_run
+from disorder_landscape.runs import FIVE, TEN, preset_run
 from disorder_landscape.solver.compiled import core
 from disorder_panels import disorder_data
 from plotting import COLUMN, FULL_WIDTH, paper_style
@@ -380,6 +380,16 @@ def test_longer_and_rougher_wires_need_more_components(drawn):
     assert (required.diff("sites") > 0).all()
     assert (required.diff("fidelity") > 0).all()
     assert (required.diff("correlation_length") <= 0).all()
+
+
+@pytest.mark.parametrize("figure", SCRIPTS)
+def test_each_figure_shows_wires_of_its_model(figure, monkeypatch):
+    """S4, S6 and S8 those of ten components, the others of five and α."""
+    asked, module = {}, import_module(SCRIPTS[figure])
+    monkeypatch.setattr(module, "figure_script", lambda *_, **options: asked.update(options))
+    module.main([])
+    is_of_ten = figure in ("figure_S4", "figure_S6", "figure_S8")
+    assert asked.get("model", FIVE) == (TEN if is_of_ten else FIVE)
 
 
 def test_ten_components_are_drawn_like_five(drawn):

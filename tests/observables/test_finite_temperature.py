@@ -27,13 +27,13 @@ def point(seed):
 
 @pytest.mark.parametrize("seed", [318, 508, 265, 551, 36, 39, 10, 11, 12])
 def test_the_estimate_bounds_the_error(seed):
-    """Of the first six, earlier estimates were up to 27 times below the error; 10 is at B = 0."""
+    """Up to a tenth of it. Of the first six, earlier ones were up to 27 times below; 10: B = 0."""
     wire, arguments = random_wire(seed), point(seed)
     found, estimate, _ = thermal_average([wire], *arguments)
     exact = thermal_quadrature([wire], *arguments, panel=0.02, tolerance=1e-9, reach=20.0)
     error = abs(found - exact.conductance).max()
     assert error < 1e-4
-    assert error <= 3 * estimate.item() + exact.error.item()
+    assert error <= 1.1 * estimate.item() + exact.error.item()
 
 
 @pytest.mark.parametrize("seed", [728, 804])

@@ -3,6 +3,7 @@
 import hashlib
 import json
 from dataclasses import replace
+from threading import Thread
 
 import numpy as np
 import pandas as pd
@@ -27,6 +28,7 @@ from disorder_landscape.claims.study_tables import (
 from disorder_landscape.config import DatasetConfig
 from disorder_landscape.dataset.realizations import realization
 from disorder_landscape.executors.executor import Share
+from disorder_landscape.files import write_json
 from disorder_landscape.inference.optimum import optimum_at
 from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.problem.gaussian import Gaussian
@@ -55,7 +57,7 @@ from disorder_landscape.studies.other_wires import (
     true_noise,
 )
 from disorder_landscape.studies.plan import load_study
-from disorder_landscape.studies.rows import as_text, read_rows, write_rows
+from disorder_landscape.studies.rows import as_text, read_rows, stored_numbers, write_rows
 from disorder_landscape.studies.study import Place
 from disorder_landscape.studies.truth import of_device
 from disorder_landscape.studies.uniqueness import Setting, information_rows
@@ -163,6 +165,37 @@ def test_shares_of_a_study_are_gathered(study, place, monkeypatch):
     assert len(done) == len(set(done)) == 12
     assert len(read_rows(study.table(place))) == 12
     assert not [path for path in place.output.iterdir() if "share" in path.name]
+
+
+def test_a_row_that_a_share_adds_while_it_is_gathered_is_not_lost(study, place, monkeypatch):
+    share = replace(place, share=Share(1, 5))
+    tasks, write = share.share.of(study.tasks)[:2], runner.write_rows
+    first, second = ([as_text(row(one.index, one.model, one.noise))] for one in tasks)
+    adding = Thread(target=runner._add, args=(study, share, second))
+
+    def write_while_the_share_adds(path, *arguments):
+        if path == study.table(place):
+            adding.start()
+            adding.join(0.5)
+        write(path, *arguments)
+
+    runner._add(study, share, first)
+    monkeypatch.setattr(runner, "write_rows", write_while_the_share_adds)
+    runner._gather_shares(study, place)
+    adding.join()
+    tables = [study.table(place), study.table_of_share(share)]
+    there = [study.key_of_row(one) for table in tables for one in read_rows(table)]
+    assert there == [study.key(one) for one in tasks]
+
+
+def test_what_followed_from_other_rows_is_no_longer_there(tmp_path):
+    path = tmp_path / "some.csv"
+    write_rows(path, [as_text(row(0))], "")
+    write_json(path.with_suffix(".json"), {**stored_numbers(path), "mean": 0.5})
+    write_rows(path, [as_text(row(0))], "")
+    assert stored_numbers(path)["mean"] == 0.5
+    write_rows(path, [as_text(row(0)), as_text(row(1))], "")
+    assert "mean" not in stored_numbers(path)
 
 
 def test_rows_of_an_interrupted_study_stay(study, place, monkeypatch):

@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from disorder_landscape.arguments import ArgumentError, require
+from disorder_landscape.cli.options import refuse
 from disorder_landscape.executors.executor import Executor
 from disorder_landscape.executors.local import LocalProcesses
 
@@ -41,9 +42,13 @@ Scheduler = Annotated[
 
 
 def check_options_of(
-    where: Where, site_file: Path | None, dry_run: bool, scheduler: str | None
+    context: typer.Context,
+    where: Where,
+    site_file: Path | None,
+    dry_run: bool,
+    scheduler: str | None,
 ) -> None:
-    """Refuse options of another executor, which would be without effect.
+    """Refuse options that would be without effect: another executor's, or what a site says.
 
     Raises
     ------
@@ -57,6 +62,10 @@ def check_options_of(
     ):
         must = f"be left out without --executor {executor}"
         require(not is_given or where is executor, name, must, f"the executor is {where}")
+    if where is Where.SLURM:
+        refuse(
+            context, ["workers", "share", "limit"], "with --executor slurm: the site's file says it"
+        )
 
 
 def executor_of(where: Where, workers: int, scheduler: str | None) -> Executor:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import typer
+
 from disorder_landscape.cli.executors import (
     DryRun,
     ExecutorName,
@@ -19,6 +21,7 @@ from disorder_landscape.executors.executor import parse_share
 
 
 def generate(
+    context: typer.Context,
     config: ConfigFile,
     build: Build = Path("build"),
     workers: Workers = 2,
@@ -35,7 +38,7 @@ def generate(
     from disorder_landscape import chain, runs
     from disorder_landscape.dataset.shards import missing_shards
 
-    check_options_of(executor, site, dry_run, scheduler)
+    check_options_of(context, executor, site, dry_run, scheduler)
     run, taken = runs.open_run(config, build), parse_share(share)
     with resumable():
         if executor is Where.SLURM:

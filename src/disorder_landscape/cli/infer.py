@@ -27,6 +27,7 @@ from disorder_landscape.cli.options import (
     Workers,
     check_outputs,
     made_here,
+    refuse,
     resumable,
     wrote,
 )
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
 
 @needs("inference")
 def infer(
+    context: typer.Context,
     measurements: Annotated[
         list[Path],
         typer.Argument(metavar="measurement...", help="netCDF files with G_LL ... G_RL."),
@@ -112,7 +114,7 @@ def infer(
     from disorder_landscape.inference.problem.noise import parse_noise
     from disorder_landscape.inference.settings import Settings
 
-    check_options_of(executor, site, dry_run, scheduler)
+    check_options_of(context, executor, site, dry_run, scheduler)
     errors = None if noise is None else parse_noise(noise)
     settings = Settings(prior, model, errors, from_prior, samples, seed, discrepancy, made_here())
     is_file = len(measurements) == 1 and output.suffix and not output.is_dir()
@@ -122,6 +124,7 @@ def infer(
         alone = executor is Where.LOCAL and parse_share(share).is_whole
         must = "be a folder, where jobs, other machines or a share of the tasks are asked for"
         require(alone, "output", must, f"it is '{output}'")
+        refuse(context, ["workers"], "for one measurement, which takes all cores")
         _infer_alone(settings, Task(measurements[0], output, plot))
         return
     with resumable():

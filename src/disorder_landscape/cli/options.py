@@ -20,6 +20,29 @@ ShareOfTasks = Annotated[
 ]
 
 
+def refuse(context: typer.Context, names: Sequence[str], where: str) -> None:
+    """Refuse options of a command where they would be without effect.
+
+    Parameters
+    ----------
+    context : Context
+        Of the command that runs.
+    names : sequence of str
+        Of its parameters; those that it does not have do not count.
+    where : str
+        Words like "with --list".
+
+    Raises
+    ------
+    ArgumentError
+        If one of them is given.
+    """
+    for name in names:
+        source = context.get_parameter_source(name)
+        is_given = source is not None and source.name != "DEFAULT"
+        require(not is_given, name.replace("_", "-"), f"be left out {where}", "it is given")
+
+
 @contextmanager
 def resumable() -> Iterator[None]:
     """Tell whoever presses Ctrl-C how to go on."""

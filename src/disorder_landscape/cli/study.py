@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from disorder_landscape.arguments import ArgumentError
+from disorder_landscape.arguments import ArgumentError, require
 from disorder_landscape.cli.executors import (
     DryRun,
     ExecutorName,
@@ -18,7 +18,7 @@ from disorder_landscape.cli.executors import (
     executor_of,
     on_slurm,
 )
-from disorder_landscape.cli.options import Build, ShareOfTasks, Workers, resumable
+from disorder_landscape.cli.options import Build, ShareOfTasks, Workers, refuse, resumable
 from disorder_landscape.executors.executor import parse_share
 from disorder_landscape.executors.slurm import jobs_folder
 from disorder_landscape.parts import needs
@@ -26,6 +26,7 @@ from disorder_landscape.parts import needs
 
 @needs("learning")
 def study(
+    context: typer.Context,
     plan: Annotated[
         str | None, typer.Argument(help="Name of a plan in configs/studies, or a TOML file.")
     ] = None,
@@ -55,9 +56,14 @@ def study(
     """
     from disorder_landscape.studies.plan import load_study
     from disorder_landscape.studies.runner import carry_out
-    from disorder_landscape.studies.study import Place, study_names
+    from disorder_landscape.studies.study import PLANS, Place, study_names
 
-    check_options_of(executor, site, dry_run, scheduler)
+    must = "be carried out in a clone of the repository, which has the plans"
+    require(PLANS.is_dir(), "study", must, "this installation has none")
+    if listed:
+        executors = ("executor", "site", "dry_run", "scheduler")
+        refuse(context, ["plan", "workers", "limit", "share", *executors], "with --list")
+    check_options_of(context, executor, site, dry_run, scheduler)
     place = Place(output, build, executor_of(executor, workers, scheduler), parse_share(share))
     if listed:
         for name in study_names():

@@ -76,7 +76,7 @@ def _script(
     program = [str(Path(sys.executable).with_name("landscape")), *command]
     lines = [
         "#!/bin/bash",
-        *(f"#SBATCH --{name}={value}" for name, value in options.items()),
+        *(f"#SBATCH --{name}={_quoted(value)}" for name, value in options.items()),
         "#SBATCH --requeue",
         "set -e",
         *site.setup,
@@ -84,6 +84,14 @@ def _script(
         f"--share $((SLURM_ARRAY_TASK_ID + {before}))/{jobs}",
     ]
     return "\n".join(lines) + "\n"
+
+
+def _quoted(value: str) -> str:
+    """Return the value of an option as sbatch reads it: in double quotes if it has blanks."""
+    if not any(one in value for one in " \t\"'\\#"):
+        return value
+    escaped = value.replace("\\", "\\\\").replace('"', '\\"')
+    return f'"{escaped}"'
 
 
 def run(command: Sequence[str], site: Site, missing: Callable[[], int], folder: Path) -> None:

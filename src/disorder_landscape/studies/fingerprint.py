@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import hashlib
+from pathlib import Path
 
 from disorder_landscape.runs import REPOSITORY
 
-PACKAGE = REPOSITORY / "src" / "disorder_landscape"
+PACKAGE = Path(__file__).parents[1]
 
 
 def fingerprint(*modules: str, settings: str) -> str:

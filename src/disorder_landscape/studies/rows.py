@@ -52,7 +52,10 @@ def read_rows(path: Path) -> list[Row]:
 def write_rows(
     path: Path, rows: Sequence[Row], command: str, settings: Mapping[str, object] | None = None
 ) -> None:
-    """Write a table, and beside it what made it (JSON, with settings and the table's checksum)."""
+    """Write a table, and beside it what made it (JSON, with settings and the table's checksum).
+
+    What followed from other rows is no longer there.
+    """
     text = io.StringIO(newline="")
     columns = list(dict.fromkeys(column for row in rows for column in row))
     writer = csv.DictWriter(text, columns, restval="", lineterminator="\n")
@@ -64,7 +67,9 @@ def write_rows(
         made[SETTINGS] = settings
     if path.exists():
         made[CHECKSUM_BEFORE] = hashlib.sha256(path.read_bytes()).hexdigest()
-    write_json(path.with_suffix(".json"), {**stored_numbers(path), "provenance": made})
+    same = made.get(CHECKSUM_BEFORE) == made[CHECKSUM]
+    followed = stored_numbers(path) if same else {}
+    write_json(path.with_suffix(".json"), {**followed, "provenance": made})
     with replacing(path) as temporary:
         temporary.write_bytes(content)
 

@@ -96,23 +96,25 @@ def _gather_shares(study: Study, place: Place) -> bool:
     """Take what other runs have left in tables of their shares; whether there are any."""
     paths = study.tables_of_shares(place)
     for path in paths:
-        _add(study, place, read_rows(path))
-        path.unlink()
-        path.with_suffix(".json").unlink(missing_ok=True)
+        with kept_from_others(path.parent, path.name):  # its own run may be adding rows
+            _add(study, place, read_rows(path))
+            path.unlink(missing_ok=True)
+            path.with_suffix(".json").unlink(missing_ok=True)
     return bool(paths)
 
 
 def _add(study: Study, place: Place, new: Iterable[Row]) -> None:
     """Write rows into the table, and keep those that others have added in the meantime."""
     path = study.table_of_share(place)
-    there = read_rows(path)
-    known = {study.key_of_row(row) for row in there}
-    rows = [*there, *(row for row in new if study.key_of_row(row) not in known)]
     order = {study.key(task): i for i, task in enumerate(study.tasks)}
-    if not study.plan.keeps_others:
-        rows = [row for row in rows if study.key_of_row(row) in order]
-    rows.sort(key=lambda row: order.get(study.key_of_row(row), len(order)))
-    write_rows(path, rows, study.command, study.plan.settings())
+    with kept_from_others(path.parent, path.name):
+        there = read_rows(path)
+        known = {study.key_of_row(row) for row in there}
+        rows = [*there, *(row for row in new if study.key_of_row(row) not in known)]
+        if not study.plan.keeps_others:
+            rows = [row for row in rows if study.key_of_row(row) in order]
+        rows.sort(key=lambda row: order.get(study.key_of_row(row), len(order)))
+        write_rows(path, rows, study.command, study.plan.settings())
 
 
 def _conclude(study: Study, place: Place, has_new: bool) -> Derived:
