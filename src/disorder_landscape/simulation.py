@@ -58,9 +58,9 @@ def chosen_wire(
     """
     both = "one of --potential and --seed at most"
     require(potential is None or seed is None, "potential", f"come with {both}", "both are given")
-    drawn = seed is not None or not components
-    drawn = drawn and (potential is None or components is None)
-    require(drawn, "components", "come with --seed, which draws them", "there is none")
+    is_pristine = components == 0 and potential is None
+    goes = components is None or seed is not None or is_pristine
+    require(goes, "components", "come with --seed, which draws them", "there is none")
     if potential is not None:
         V = read_potential(potential)
         fits = sites in (None, V.size)

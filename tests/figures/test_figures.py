@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import replace
 from importlib import import_module
 from itertools import combinations
@@ -390,6 +391,15 @@ def test_each_figure_shows_wires_of_its_model(figure, monkeypatch):
     module.main([])
     is_of_ten = figure in ("figure_S4", "figure_S6", "figure_S8")
     assert asked.get("model", FIVE) == (TEN if is_of_ten else FIVE)
+
+
+def test_a_preset_that_is_none_is_one_sentence_before_all_figures(capsys, monkeypatch):
+    monkeypatch.setattr(sys, "argv", ["estimate.py", "--preset", "smal"])
+    with pytest.raises(SystemExit) as stop:
+        import_module("estimate").main()
+    said = capsys.readouterr().err
+    assert (stop.value.code, said.count("\n")) == (2, 1)
+    assert said.startswith("estimate.py: Argument preset must be one of full, noisy, paper, ")
 
 
 def test_ten_components_are_drawn_like_five(drawn):
