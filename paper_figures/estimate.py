@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Sequence
 
 from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.dataset import shards
@@ -28,18 +27,13 @@ def main() -> None:
     preset = parser.parse_args().preset
     try:
         runs = [preset_run(preset, model=model) for model in MODELS]
-        wires = _wires_of_figures(runs)
+        wires = DRAWING + sum(_wires(run) * _points(run) for run in runs) / _points(runs[0])
     except ArgumentError as error:
         print(f"estimate.py: {error}", file=sys.stderr)
         sys.exit(2)
     config = runs[0].config.dataset
     with compiled.threads_at_work(1):
         announce_repeated("make figures", lambda k: simulate(config, range(k, k + 1)), wires)
-
-
-def _wires_of_figures(runs: Sequence[Run]) -> float:
-    """Return how many wires of the first run take as long as all figures and what they need."""
-    return DRAWING + sum(_wires(run) * _points(run) for run in runs) / _points(runs[0])
 
 
 def _wires(run: Run) -> float:

@@ -33,7 +33,7 @@ from disorder_landscape.learning.model import TrainedModel
 from disorder_landscape.learning.scaling import LabelScaler
 from disorder_landscape.model.disorder import disorder_realization
 from disorder_landscape.observables import topological_overlap
-from disorder_landscape.runs import REPOSITORY, presets
+from disorder_landscape.runs import CONFIGS, REPOSITORY, presets
 from disorder_landscape.studies.rows import as_text, write_rows
 from disorder_landscape.studies.study import study_names
 from disorder_landscape.studies.trainings_table import Result
@@ -116,7 +116,7 @@ def make_exists(words):
     targets |= {"figure-" + script.stem.split("_")[1] for script in scripts}
     given = dict(word.split("=") for word in words[1:])
     drawn = set(presets())
-    configs = {path.stem for path in (REPOSITORY / "configs").glob("*.toml")}
+    configs = {path.stem for path in CONFIGS.glob("*.toml")}
     allowed = {
         "PRESET": drawn if words[0].startswith("figure") else configs,
         "STUDY": set(study_names()),

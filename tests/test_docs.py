@@ -43,12 +43,9 @@ def test_every_target_of_make_that_is_named_exists():
         command for page in pages for command in re.findall(r"`make ([^`<]+)`", page.read_text())
     }
     assert len(named) > 10
-    placeholders = {"ONLY=id": "", "STUDY=NAME": "", "figure-NAME": "figure-4"}
-    words = [
-        " ".join(placeholders.get(word, word) for word in one.split()).split()
-        for one in sorted(named)
-    ]
-    assert [one for one in words if not make_exists(one)] == []
+    for one in named:
+        words = one.replace("figure-NAME", "figure-4").split()
+        assert make_exists([word for word in words if word not in ("ONLY=id", "STUDY=NAME")]), one
 
 
 def test_every_package_has_a_licence_and_none_that_is_needed_is_under_the_gpl():

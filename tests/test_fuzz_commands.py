@@ -4,7 +4,6 @@ Never a traceback, a warning or a file left behind by what is refused, nor a wai
 What would take long is left out once all has been checked (`cheap`).
 """
 
-import dataclasses
 import io
 import json
 import re
@@ -13,6 +12,7 @@ import sys
 import tempfile
 import tomllib
 from contextlib import suppress
+from dataclasses import dataclass, fields
 from pathlib import Path
 
 import h5py
@@ -76,7 +76,7 @@ def safe(text):
     return all(char.isprintable() or char == "\t" for char in text)
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclass(frozen=True)
 class Command:
     """A command: words, and files by their names, as text, bytes or a Dataset."""
 
@@ -686,7 +686,7 @@ def test_predict_writes_or_refuses(count, refused_or_done):
 
 
 PRIOR = {"": {"components": 2, "sites": 10}}
-PRIOR_KEYS = [field.name for field in dataclasses.fields(Prior)]
+PRIOR_KEYS = [field.name for field in fields(Prior)]
 
 
 @argument_sets(8)

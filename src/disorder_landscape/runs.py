@@ -115,8 +115,8 @@ def preset_run(preset: str, build: str | Path = "build", model: str = FIVE) -> R
     ArgumentError
         If there is no such preset.
     """
-    must = f"be one of {', '.join(presets())}"
-    require(preset in presets(), "preset", must, f"it is '{preset}'")
+    known = presets()
+    require(preset in known, "preset", f"be one of {', '.join(known)}", f"it is '{preset}'")
     there = {path.stem for path in CONFIGS.glob("*.toml")}
     name = preset if model == FIVE else f"{preset}_{model}"
     if name in there:

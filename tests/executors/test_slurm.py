@@ -14,7 +14,6 @@ import time
 import pytest
 from typer.testing import CliRunner
 
-import disorder_landscape.studies.study
 from disorder_landscape import ArgumentError
 from disorder_landscape.cli import app
 from disorder_landscape.executors import slurm
@@ -172,21 +171,9 @@ def test_one_result_is_not_shared_out(options, said):
     assert said in str(told.exception)
 
 
-@pytest.mark.parametrize("option", ["--limit=0", "--share=1/2", "--workers=2", "--dry-run"])
-def test_a_list_of_studies_takes_no_options_of_a_run(option):
-    told = CliRunner().invoke(app, ["study", "--list", option])
-    assert "must be left out with --list" in str(told.exception)
-
-
 def test_a_limit_is_refused_where_jobs_would_not_have_it():
     told = CliRunner().invoke(app, ["study", "noise", "--limit", "1", "--executor", "slurm"])
     assert "limit must be left out with --executor slurm" in str(told.exception)
-
-
-def test_a_study_needs_the_plans_of_the_repository(monkeypatch, tmp_path):
-    monkeypatch.setattr(disorder_landscape.studies.study, "PLANS", tmp_path / "none")
-    told = CliRunner().invoke(app, ["study", "noise"])
-    assert "study must be carried out in a clone of the repository" in str(told.exception)
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ from typer.testing import CliRunner
 
 from disorder_landscape.cli import app
 from disorder_landscape.executors.local import LocalProcesses
+from disorder_landscape.studies import study as studies
 from disorder_landscape.studies import trainings
 from disorder_landscape.studies.plan import load_study
 from disorder_landscape.studies.runner import carry_out
@@ -131,3 +132,15 @@ def test_all_studies_are_listed(tmp_path):
 def test_a_plan_that_is_not_there_is_one_sentence(tmp_path):
     said = CliRunner().invoke(app, ["study", str(tmp_path / "no.toml")])
     assert said.exit_code != 0
+
+
+@pytest.mark.parametrize("option", ["--limit=0", "--share=1/2", "--workers=2", "--dry-run"])
+def test_a_list_of_studies_takes_no_options_of_a_run(option):
+    told = CliRunner().invoke(app, ["study", "--list", option])
+    assert "must be left out with --list" in str(told.exception)
+
+
+def test_a_study_needs_the_plans_of_the_repository(monkeypatch, tmp_path):
+    monkeypatch.setattr(studies, "PLANS", tmp_path / "none")
+    told = CliRunner().invoke(app, ["study", "noise"])
+    assert "study must be carried out in a clone of the repository" in str(told.exception)

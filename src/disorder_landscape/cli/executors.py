@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from disorder_landscape.arguments import ArgumentError, require
+from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.cli.options import refuse
 from disorder_landscape.executors.executor import Executor
 from disorder_landscape.executors.local import LocalProcesses
@@ -41,31 +41,20 @@ Scheduler = Annotated[
 ]
 
 
-def check_options_of(
-    context: typer.Context,
-    where: Where,
-    site_file: Path | None,
-    dry_run: bool,
-    scheduler: str | None,
-) -> None:
-    """Refuse options that would be without effect: another executor's, or what a site says.
+def check_options_of(context: typer.Context, where: Where) -> None:
+    """Refuse options that would be without effect with an executor.
 
     Raises
     ------
     ArgumentError
         If there are any.
     """
-    for name, is_given, executor in (
-        ("site", site_file is not None, Where.SLURM),
-        ("dry-run", dry_run, Where.SLURM),
-        ("scheduler", scheduler is not None, Where.DASK),
-    ):
-        must = f"be left out without --executor {executor}"
-        require(not is_given or where is executor, name, must, f"the executor is {where}")
     if where is Where.SLURM:
-        refuse(
-            context, ["workers", "share", "limit"], "with --executor slurm: the site's file says it"
-        )
+        refuse(context, ["workers", "share", "limit"], "with --executor slurm")
+    else:
+        refuse(context, ["site", "dry_run"], "without --executor slurm")
+    if where is not Where.DASK:
+        refuse(context, ["scheduler"], "without --executor dask")
 
 
 def executor_of(where: Where, workers: int, scheduler: str | None) -> Executor:

@@ -38,7 +38,7 @@ def generate(
     from disorder_landscape import chain, runs
     from disorder_landscape.dataset.shards import missing_shards
 
-    check_options_of(context, executor, site, dry_run, scheduler)
+    check_options_of(context, executor)
     run, taken = runs.open_run(config, build), parse_share(share)
     with resumable():
         if executor is Where.SLURM:

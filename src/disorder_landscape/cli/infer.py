@@ -114,7 +114,7 @@ def infer(
     from disorder_landscape.inference.problem.noise import parse_noise
     from disorder_landscape.inference.settings import Settings
 
-    check_options_of(context, executor, site, dry_run, scheduler)
+    check_options_of(context, executor)
     errors = None if noise is None else parse_noise(noise)
     settings = Settings(prior, model, errors, from_prior, samples, seed, discrepancy, made_here())
     is_file = len(measurements) == 1 and output.suffix and not output.is_dir()

@@ -63,7 +63,7 @@ def study(
     if listed:
         executors = ("executor", "site", "dry_run", "scheduler")
         refuse(context, ["plan", "workers", "limit", "share", *executors], "with --list")
-    check_options_of(context, executor, site, dry_run, scheduler)
+    check_options_of(context, executor)
     place = Place(output, build, executor_of(executor, workers, scheduler), parse_share(share))
     if listed:
         for name in study_names():

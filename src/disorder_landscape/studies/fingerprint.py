@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import hashlib
-from pathlib import Path
 
 from disorder_landscape.runs import REPOSITORY
 
-PACKAGE = Path(__file__).parents[1]
+PACKAGE = REPOSITORY / "src" / "disorder_landscape"
 
 
 def fingerprint(*modules: str, settings: str) -> str:

@@ -7,10 +7,10 @@ from typing import Annotated
 from pydantic import AfterValidator
 
 from disorder_landscape.inference.problem.prior import Prior
-from disorder_landscape.runs import REPOSITORY
+from disorder_landscape.runs import CONFIGS
 from disorder_landscape.studies.study import one_of
 
-PRIORS = REPOSITORY / "configs" / "priors"
+PRIORS = CONFIGS / "priors"
 
 
 def named_prior(name: str) -> Prior:

@@ -12,10 +12,10 @@ from pydantic import BaseModel, ConfigDict
 
 from disorder_landscape.executors.executor import WHOLE, Executor, Share
 from disorder_landscape.executors.local import IN_THIS_PROCESS
-from disorder_landscape.runs import REPOSITORY
+from disorder_landscape.runs import CONFIGS
 from disorder_landscape.studies.rows import Row
 
-PLANS = REPOSITORY / "configs" / "studies"
+PLANS = CONFIGS / "studies"
 
 
 def study_names() -> list[str]:
