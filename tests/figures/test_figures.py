@@ -394,7 +394,7 @@ def test_each_figure_shows_wires_of_its_model(figure, monkeypatch):
 
 
 def test_a_preset_that_is_none_is_one_sentence_before_all_figures(capsys, monkeypatch):
-    monkeypatch.setattr(sys, "argv", ["estimate.py", "--preset", "smal"])
+    monkeypatch.setattr(sys, "argv", ["estimate.py", "--preset", "large"])
     with pytest.raises(SystemExit) as stop:
         import_module("estimate").main()
     said = capsys.readouterr().err
