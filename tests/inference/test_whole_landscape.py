@@ -10,7 +10,6 @@ from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.invert import invert
 from disorder_landscape.inference.landscape_hint import landscape_hint
 from disorder_landscape.inference.problem.gaussian import Gaussian
-from disorder_landscape.inference.problem.measurement import Measurement
 from disorder_landscape.inference.problem.noise import noise_of_channels
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.problem.prior import Prior
@@ -31,14 +30,24 @@ from disorder_landscape.inference.search.whole_landscape import (
 from disorder_landscape.inference.verdict import CONVERGED, is_surely_right, verdict
 from disorder_landscape.model.disorder import smooth_noise
 from disorder_landscape.solver.quadrature import thermal_quadrature
-from linear_data import DATA, Ending, Linear, posterior
-
-SITES, AMPLITUDE, NOISE = 30, 0.8, 0.002
-MU, B, BIAS = np.linspace(0, 4.2, 12), np.linspace(0, 0.8, 3), np.linspace(-0.08, 0.08, 5)
-NOTHING = Measurement(np.zeros((12, 3, 5, 4)), MU, B, BIAS, 0.0, (15.0, 15.0), 0.05)
-UNKNOWNS = Unknowns(
-    Prior(components=None, sites=SITES, amplitude=AMPLITUDE).for_measurement(NOTHING)
+from landscape_data import (
+    AMPLITUDE,
+    BIAS,
+    MU,
+    NOISE,
+    NOTHING,
+    SITES,
+    UNKNOWNS,
+    B,
+    Whole,
+    linear_landscape,
 )
+from linear_data import DATA, Ending, posterior
+
+
+@pytest.fixture
+def whole():
+    return linear_landscape()
 
 
 def test_v_of_every_site_is_found_without_a_guess():
@@ -102,29 +111,6 @@ def test_few_points_are_spread_over_what_is_measured():
     np.testing.assert_array_equal(few.measurement.B, B)
     np.testing.assert_array_equal(few.measurement.bias, BIAS[[0, 3, 4]])
     assert few.data.size == few.measurement.G.size
-
-
-class Whole(Linear):
-    """Linear data of a whole landscape, all of them in each part."""
-
-    measurement = NOTHING
-
-    def at(self, mu, B, bias):
-        return replace(self)
-
-    def on_few_points(self, *counts):
-        return replace(self)
-
-    def on_random_points(self, highest, counts, rng):
-        return replace(self)
-
-
-@pytest.fixture
-def whole():
-    rng = np.random.default_rng(0)
-    slope = rng.normal(size=(len(UNKNOWNS.names), DATA))
-    truth = rng.normal(size=len(UNKNOWNS.names))
-    return Whole(truth @ slope, slope, unknowns=UNKNOWNS)
 
 
 @pytest.fixture

@@ -91,8 +91,8 @@ def infer(
         File through which an interrupted run goes on. It is not deleted, since the result is not
         saved.
     progress : callable, optional
-        Called with a `Step` after each round and each iteration of importance sampling, before each
-        Gauss–Newton step, and before the maps.
+        Called with a `Step` after each round, some small steps and each iteration of importance
+        sampling, before each Gauss–Newton step, and before the maps.
 
     Returns
     -------

@@ -18,23 +18,27 @@ there."""
 
 
 def landscape_hint(observation: Observation) -> str:
-    """Return a line about µ that do not go up high enough for V of every site, or nothing.
+    """Return a line about µ that do not go up high enough for V of every site, or nothing."""
+    highest, needed = highest_and_needed_mu(observation)
+    if not observation.unknowns.is_whole_landscape or highest >= needed:
+        return ""
+    sites = observation.unknowns.prior.sites
+    return (
+        f"V of every site may not be found: µ goes up to {highest:.2g} meV. It is "
+        f"known to be found from {needed:.2g} meV on ({sites} sites of this disorder)."
+    )
+
+
+def highest_and_needed_mu(observation: Observation) -> tuple[float, float]:
+    """Return up to which µ there are data, in meV, and from which on ways from high µ find V.
 
     The phase is 2/(ħv) √(σ² L c), of a potential with the standard deviation σ that is correlated
     over c on a length L, where ħv = 2a√(Tµ).
     """
     unknowns = observation.unknowns
-    if not unknowns.is_whole_landscape:
-        return ""
     middle = unknowns.devices(unknowns.white_noise.mean[None], observation.measurement)[0]
     highest, prior = float(middle.setup.mu.max()), unknowns.prior
     std = unknowns.site_std(unknowns.white_noise.covariance)
     correlated = np.sqrt(2 * np.pi) * prior.correlation_length  # the integral of exp(−x²/2ℓ²)
     phase_there = std**2 * prior.sites * correlated / hopping(prior.mass, prior.lattice)
-    needed = max(phase_there / PHASE**2, ABOVE * std)
-    if highest >= needed:
-        return ""
-    return (
-        f"V of every site may not be found: µ goes up to {highest:.2g} meV. It is "
-        f"known to be found from {needed:.2g} meV on ({prior.sites} sites of this disorder)."
-    )
+    return highest, max(phase_there / PHASE**2, ABOVE * std)

@@ -14,12 +14,13 @@ from disorder_landscape.inference.stages import (
     IMPORTANCE_SAMPLING,
     MAPS,
     ROUND,
+    SMALL_STEPS,
     Progress,
     Step,
 )
 from disorder_landscape.inference.verdict import is_surely_right
 
-USUAL_STEPS = {ROUND: 4, GAUSS_NEWTON: 8, IMPORTANCE_SAMPLING: 3, MAPS: 1}
+USUAL_STEPS = {ROUND: 4, SMALL_STEPS: 120, GAUSS_NEWTON: 8, IMPORTANCE_SAMPLING: 3, MAPS: 1}
 """How many most inversions take, of about one length: what the time left is estimated from."""
 
 WIRES_PER_UNKNOWN = 12, 35, 220

@@ -7,7 +7,7 @@ from functools import partial
 from typing import NamedTuple
 
 ROUND, GAUSS_NEWTON, IMPORTANCE_SAMPLING = "round", "Gauss–Newton", "importance sampling"
-MAPS = "maps"
+SMALL_STEPS, MAPS = "small steps", "maps"
 """The stages."""
 
 
@@ -16,7 +16,7 @@ class Step(NamedTuple):
 
     attempt: int
     stage: str
-    """One of ROUND, GAUSS_NEWTON, IMPORTANCE_SAMPLING and MAPS."""
+    """One of ROUND, SMALL_STEPS, GAUSS_NEWTON, IMPORTANCE_SAMPLING and MAPS."""
     number: int
     misfit: float
     """Root mean square in e²/h."""
@@ -25,8 +25,8 @@ class Step(NamedTuple):
 
 
 Progress = Callable[[Step], None]
-"""A progress callback: called after each round and each iteration of importance sampling, before
-each Gauss–Newton step, and before the maps of a result."""
+"""A progress callback: called after each round, some small steps and each iteration of importance
+sampling, before each Gauss–Newton step, and before the maps of a result."""
 Report = Callable[[int, float, float], None]
 """The same within one stage: number, misfit and spread."""
 

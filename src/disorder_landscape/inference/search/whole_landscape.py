@@ -27,10 +27,12 @@ from typing import Any
 
 import numpy as np
 
+from disorder_landscape.inference.landscape_hint import highest_and_needed_mu
 from disorder_landscape.inference.optimum import Optimum, best, chi_square_excess, is_noise
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.search.gauss_newton import Goal
 from disorder_landscape.inference.search.optima import Optima
+from disorder_landscape.inference.search.population import Population
 from disorder_landscape.inference.search.steps import Steps
 from disorder_landscape.inference.streams import Stream
 from disorder_landscape.model.parameters import FloatArray
@@ -58,6 +60,8 @@ BACK = 5
 """Where more data are not explained then, steps go back to draws, at most so many times."""
 AGAIN = range(12, 20, 2)
 """Ways that leave the best optimum begin with so many lines, by turns."""
+POPULATIONS = 2
+"""At most, where µ is low."""
 STARTS = 3, 8
 """At least, and at most: a way down that leads to an optimum that fits, and those that leave it."""
 
@@ -69,9 +73,12 @@ def optima_of_whole_landscape(
     in_fields = _in_fields(observation)
     some = in_fields.on_few_points(*MORE)
     optima = Optima(in_fields, steps, STARTS)
-    for number in range(WAYS_DOWN):
-        way = _Way(in_fields, some, steps, seed, (number,))
-        x, goal = way.down()
+    highest, needed = highest_and_needed_mu(observation)
+    for number in range(WAYS_DOWN if highest >= needed else POPULATIONS):
+        way: _Way | Population = _Way(in_fields, some, steps, seed, (number,))
+        if highest < needed:
+            way = Population(in_fields, steps, seed, (number,))
+        x, goal = way.towards_optimum()
         optima.start_at(x, number, goal)
         until = optima.starts + STARTS[1] - 1
         while optima.fits and not optima.is_settled and optima.starts < until:
@@ -96,7 +103,7 @@ class _Way:
     seed: int
     name: tuple[int, ...]
 
-    def down(self) -> tuple[FloatArray, Goal]:
+    def towards_optimum(self) -> tuple[FloatArray, Goal]:
         """Go down from V = 0 or a draw of the prior."""
         prior = self.observation.unknowns.white_noise
         x = prior.mean if self.name == (0,) else prior.draw(self._rng(), 2)[0]

@@ -1,0 +1,190 @@
+"""Wires that have V from others, except for a part: drawn anew, or another wire's."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import block_diag
+
+from disorder_landscape.inference.problem.gaussian import Gaussian
+from disorder_landscape.inference.problem.observation import Observation, objective, squared_misfits
+from disorder_landscape.inference.problem.unknowns import Unknowns
+from disorder_landscape.model.parameters import FloatArray
+
+BEST = 0.6
+"""How often the best wire gets another part, and not any of them."""
+EXCHANGED, MOVED = 0.5, 0.2
+"""How often the part is another wire's, where there are several; and how often the wire's own, at
+other sites. (What is behind a well that is too shallow or too narrow is right, but too near, where
+half a wavelength is missing in the well.)"""
+ENDS = 0.4
+"""How often the wire of the best left end then gets the right end of the wire of the best one."""
+LEAST_END = 0.15
+"""In shares of the wire. Ends are no shorter."""
+DEPTH = 0.55
+"""Parts that are drawn anew are of this share of the wire, from one end on: …"""
+LEAST_EXCESS = 0.02
+"""… more often from the one whose conductance is explained worse. Misfits are the noise's up to
+this excess of their mean square."""
+KEPT = 0.03
+"""V of the other sites may differ by this at first, in standard deviations of the prior."""
+
+
+@dataclass(frozen=True, eq=False)
+class Wire:
+    """One of a population."""
+
+    x: FloatArray
+    """The unknowns, shape (unknown,)."""
+    data: FloatArray
+    """Simulated, shape (datum,): few data, by which wires are compared."""
+    objective: float
+    """−2 log of its posterior density with these, up to a constant."""
+    ends: tuple[float, float]
+    """Mean square misfits of G_LL and of G_RR in units of the noise's."""
+
+    @classmethod
+    def at(cls, few: Observation, x: FloatArray) -> Wire:
+        """Return the wire of unknowns (unknown,)."""
+        y = few.simulate(x[None])[0]
+        squares = squared_misfits(few, y)
+        of_ends = [squares[few.channel == end] for end in range(2)]
+        left, right = (float((of if of.size else squares).mean()) for of in of_ends)
+        return cls(x, y, float(objective(few, x, y)), (left, right))
+
+
+def objective_of(wire: Wire) -> float:
+    """Return by what wires are compared."""
+    return wire.objective
+
+
+def best_of(wires: Sequence[Wire]) -> Wire:
+    """Return the most probable wire."""
+    return min(wires, key=objective_of)
+
+
+class Cut(NamedTuple):
+    """How parts are cut: the least and the most of each length, in shares of the wire."""
+
+    redrawn: tuple[float, float]
+    """What is drawn anew."""
+    taken: tuple[float, float]
+    """What is another wire's, …"""
+    seam: tuple[float, float]
+    """… and what is free on either side of its ends."""
+    moved: tuple[float, float]
+    """How far a part of the same wire moves."""
+    held: float
+    """All other V may change by this, in standard deviations of the prior."""
+
+
+class Start(NamedTuple):
+    """Where steps start that change one part, above all."""
+
+    x: FloatArray
+    """The unknowns, shape (unknown,)."""
+    prior: Gaussian
+    """Of all unknowns, given those that are to change little."""
+
+
+class _Given(NamedTuple):
+    """V (site,) and the unknowns (unknown,) of a wire, and which sites are free."""
+
+    V: FloatArray
+    x: FloatArray
+    free: NDArray[np.bool_]
+
+
+def with_another_part(
+    unknowns: Unknowns, wires: Sequence[Wire], cut: Cut, rng: np.random.Generator
+) -> Start:
+    """Return a start at one of the wires with another part: drawn from the prior given the rest."""
+    kinds = [_exchanged, _moved, _redrawn] if len(wires) > 1 else [_moved, _redrawn]
+    odds = np.array([EXCHANGED, MOVED, 1 - EXCHANGED - MOVED])[-len(kinds) :]
+    given = kinds[rng.choice(len(kinds), p=odds / odds.sum())](unknowns, wires, cut, rng)
+    x = _prior_given(unknowns, given, KEPT).draw_apart(rng, 1)[0]
+    return Start(x, _prior_given(unknowns, given, cut.held))
+
+
+def _redrawn(
+    unknowns: Unknowns, wires: Sequence[Wire], cut: Cut, rng: np.random.Generator
+) -> _Given:
+    """Free a part of one wire, where its data say that V may be wrong."""
+    wire = _one_of(wires, rng)
+    left, right = (max(end - 1, LEAST_EXCESS) for end in wire.ends)
+    depth = DEPTH * rng.random()
+    middle = depth if rng.random() < left / (left + right) else 1 - depth
+    half = _length(cut.redrawn, rng) / 2
+    V = unknowns.potential(wire.x)
+    return _Given(V, wire.x, _between(V.size, middle - half, middle + half))
+
+
+def _exchanged(
+    unknowns: Unknowns, wires: Sequence[Wire], cut: Cut, rng: np.random.Generator
+) -> _Given:
+    """Put a part of one wire into another, and free the sites about its ends."""
+    if rng.random() < ENDS:
+        wire, other = (min(wires, key=lambda one: one.ends[end]) for end in range(2))
+        begin, end = rng.uniform(LEAST_END, 1 - LEAST_END), 1.0
+    else:
+        wire, length = _one_of(wires, rng), _length(cut.taken, rng)
+        other = wires[int(rng.integers(len(wires)))]
+        begin = rng.uniform(-length, 1.0)
+        end = begin + length
+    V, seam = unknowns.potential(wire.x), _length(cut.seam, rng)
+    taken = _between(V.size, begin, end)
+    V[taken] = unknowns.potential(other.x)[taken]
+    free = [_between(V.size, at - seam, at + seam) for at in (begin, end) if 0 < at < 1]
+    return _Given(V, wire.x, np.any([np.zeros(V.size, dtype=bool), *free], axis=0))
+
+
+def _moved(unknowns: Unknowns, wires: Sequence[Wire], cut: Cut, rng: np.random.Generator) -> _Given:
+    """Move a part of one wire, and free the sites about its ends."""
+    wire, length, seam = _one_of(wires, rng), _length(cut.taken, rng), _length(cut.seam, rng)
+    begin, by = rng.uniform(-length, 1.0), rng.choice([-1, 1]) * _length(cut.moved, rng)
+    V = unknowns.potential(wire.x)
+    moved = _between(V.size, begin, begin + length)
+    back = np.arange(V.size) - round(by * V.size)
+    V[moved] = V[np.clip(back, 0, V.size - 1)][moved]
+    free = np.zeros(V.size, dtype=bool)
+    for at in (begin, begin + length):
+        if 0 < at < 1:
+            free |= _between(V.size, at - seam - max(0, -by), at + seam + max(0, by))
+    return _Given(V, wire.x, free)
+
+
+def _one_of(wires: Sequence[Wire], rng: np.random.Generator) -> Wire:
+    if rng.random() < BEST:
+        return best_of(wires)
+    return wires[int(rng.integers(len(wires)))]
+
+
+def _length(least_and_most: tuple[float, float], rng: np.random.Generator) -> float:
+    """Draw a length: as often from one to two times the least as from two to four times."""
+    return float(np.exp(rng.uniform(*np.log(least_and_most))))
+
+
+def _between(sites: int, begin: float, end: float) -> NDArray[np.bool_]:
+    """Return which sites are between these shares of the wire, shape (site,)."""
+    at = (np.arange(sites) + 0.5) / sites
+    return (begin < at) & (at < end)
+
+
+def _prior_given(unknowns: Unknowns, given: _Given, held: float) -> Gaussian:
+    """Return the prior of all unknowns, given V of the sites that are not free, and parameters.
+
+    All of these may change by `held` standard deviations of the prior.
+    """
+    prior, n = unknowns.white_noise, unknowns.of_disorder
+    error = held * unknowns.site_std(prior.covariance)
+    sites, parameters = unknowns.to_potential[~given.free], np.eye(given.x.size - n)
+    known = block_diag(sites / error, parameters / held)
+    value = np.concatenate([given.V[~given.free] / error, given.x[n:] / held])
+    precision = np.linalg.inv(prior.covariance)
+    covariance = np.linalg.inv(precision + known.T @ known)
+    mean = covariance @ (known.T @ value + precision @ prior.mean)
+    return Gaussian(mean, (covariance + covariance.T) / 2)

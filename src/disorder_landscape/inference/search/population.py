@@ -1,0 +1,230 @@
+"""V of every site where µ is low: a population of wires that exchange parts.
+
+Where V scatters electrons back at each µ, data tell first of the ends of the wire, and no way leads
+from high µ to all. But wires to which small steps lead from draws of the prior become right at
+their ends, each elsewhere. So they exchange parts, and parts of them are drawn anew; small steps
+follow, and the better wires stay.
+
+Near the true V, wires differ from it by a few wells each. Then Gauss–Newton steps with few data
+follow, and exchange mends what another wire has right.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property, partial
+
+import numpy as np
+
+from disorder_landscape.inference.optimum import Optimum, chi_square_excess, is_noise
+from disorder_landscape.inference.problem.observation import (
+    Observation,
+    overall_misfit,
+    squared_misfits,
+)
+from disorder_landscape.inference.search.gauss_newton import ROUGHLY, Goal
+from disorder_landscape.inference.search.parts import (
+    Cut,
+    Wire,
+    best_of,
+    objective_of,
+    with_another_part,
+)
+from disorder_landscape.inference.search.small_steps import SmallSteps
+from disorder_landscape.inference.search.steps import Steps
+from disorder_landscape.inference.stages import SMALL_STEPS, within
+from disorder_landscape.inference.streams import Stream
+from disorder_landscape.model.parameters import FloatArray
+
+FEW, MORE = (24, 9, 7), (24, 9, 21)
+"""Points of μ, B and bias, at most, of the data by which wires are compared: far from the true V,
+and near it."""
+DRAWS = 12, 300
+"""Draws of the prior that a population begins with, and small steps from each."""
+CHILDREN, GO_ON = 8, 3
+"""So many wires of a generation get another part; and with the best of these steps go on."""
+FAR = Cut(
+    redrawn=(1 / 30, 1 / 2),
+    taken=(1 / 15, 2 / 3),
+    seam=(1 / 60, 1 / 10),
+    moved=(1 / 100, 1 / 25),
+    held=0.5,
+)
+SMALL = 100, 300, 200
+"""Small steps of each of them; of the best then; and of these, when nothing is held any more."""
+NEAR = Cut(
+    redrawn=(1 / 30, 1 / 5),
+    taken=(1 / 15, 2 / 3),
+    seam=(1 / 100, 1 / 100),
+    moved=(1 / 300, 1 / 50),
+    held=0.1,
+)
+IS_NEAR = 1.5
+"""Mean square misfit in units of the noise's, from which on Gauss–Newton steps follow instead."""
+APART_FAR, APART_NEAR = 0.25, 0.04
+"""Of wires whose V differs by less, in standard deviations of the prior, root mean square over the
+sites, only the best one stays."""
+STAY = 4, 2, 2
+"""So many of the best wires stay, and of others those with the best left and right ends."""
+GENERATIONS = 40, 40
+"""Far and near, at most."""
+IDLE = 2
+"""Generations end where the best wire explains the data, and so many have found no better one."""
+LEAVE = 300
+"""Small steps that leave an optimum, towards others near it."""
+
+
+@dataclass(eq=False)
+class Population:
+    """The search for a wire near the true one.
+
+    Each generation has random numbers of its own, so that an interrupted search goes on alike.
+
+    Parameters
+    ----------
+    observation : Observation
+    steps : Steps
+    seed : int
+    name : tuple of int
+        The number of this population, and that of a start from an optimum, if it is one.
+    """
+
+    observation: Observation
+    steps: Steps
+    seed: int
+    name: tuple[int, ...]
+    reports: int = 0
+    """How often whom it tells has been told."""
+    spread: float = 0.0
+    """What it tells: the standard deviation of V among the wires in meV, as `Step.spread`."""
+
+    @cached_property
+    def few(self) -> Observation:
+        """The data by which wires are compared far from the true V."""
+        return self.observation.on_few_points(*FEW)
+
+    @cached_property
+    def more(self) -> Observation:
+        """The data by which they are near it."""
+        return self.observation.on_few_points(*MORE)
+
+    def towards_optimum(self) -> tuple[FloatArray, Goal]:
+        """Return the unknowns (unknown,) of the best wire found, and what steps may reach there."""
+        far, near = GENERATIONS
+        wires = self._generation(0, self.few, self._drawn)
+        for number in range(1, far):
+            if squared_misfits(self.few, best_of(wires).data).mean() < IS_NEAR:
+                break
+            wires = self._generation(number, self.few, partial(self._next_far, wires))
+        else:
+            return best_of(wires).x, "place"
+        wires = self._generation(far, self.more, partial(self._come_near, wires))
+        idle = 0
+        for number in range(far + 1, far + near):
+            best = best_of(wires)
+            if idle == IDLE and is_noise(chi_square_excess(self.more, best.data)):
+                return best.x, "optimum"
+            wires = self._generation(number, self.more, partial(self._next_near, wires))
+            is_better = best_of(wires).objective < best.objective - ROUGHLY
+            idle = 0 if is_better else min(idle + 1, IDLE)
+        return best_of(wires).x, "place"
+
+    def from_optimum(self, optimum: Optimum) -> tuple[FloatArray, Goal]:
+        """Leave an optimum by small steps."""
+
+        def left(rng: np.random.Generator) -> list[Wire]:
+            prior = self.observation.unknowns.white_noise
+            small = SmallSteps(self.observation, prior, optimum.answer.mean)
+            return [self._after(small, LEAVE, rng)]
+
+        return self._generation(0, self.few, left)[0].x, "optimum"
+
+    def _generation(
+        self,
+        number: int,
+        data: Observation,
+        make: Callable[[np.random.Generator], list[Wire]],
+    ) -> list[Wire]:
+        """Return the wires of a generation, from an interrupted run or made now."""
+        rng = np.random.default_rng([self.seed, Stream.SEARCH, *self.name, number])
+        name = ".".join(["population", *map(str, self.name), str(number)])
+        found = self.steps.cache(name, lambda: {"x": [one.x.tolist() for one in make(rng)]})
+        V = self.observation.unknowns.potential(np.array(found["x"]))
+        self.spread = float(np.sqrt(V.var(axis=0).mean()))
+        return [Wire.at(data, np.array(x)) for x in found["x"]]
+
+    def _drawn(self, rng: np.random.Generator) -> list[Wire]:
+        """Return wires to which small steps lead from draws of the prior."""
+        count, steps = DRAWS
+        prior, wires = self.observation.unknowns.white_noise, []
+        for x in prior.draw_apart(rng, count):
+            small = SmallSteps(self.observation, prior, x)
+            wires.append(self._after(small, steps, rng))
+        return self._that_stay(wires, APART_FAR)
+
+    def _next_far(self, wires: list[Wire], rng: np.random.Generator) -> list[Wire]:
+        """Let small steps follow other parts."""
+        first, held, free = SMALL
+        unknowns, tried = self.observation.unknowns, []
+        for _ in range(CHILDREN):
+            start = with_another_part(unknowns, wires, FAR, rng)
+            small = SmallSteps(self.observation, start.prior, start.x)
+            tried.append((self._after(small, first, rng), small))
+        tried.sort(key=lambda one: objective_of(one[0]))
+        children = list[Wire]()
+        for _, small in tried[:GO_ON]:
+            self._after(small, held, rng)
+            small.prior = unknowns.white_noise
+            children.append(self._after(small, free, rng))
+        return self._that_stay([*wires, *children], APART_FAR)
+
+    def _come_near(self, wires: list[Wire], rng: np.random.Generator) -> list[Wire]:
+        """Let Gauss–Newton steps follow."""
+        ended = [self._ended(one.x, "better") for one in sorted(wires, key=objective_of)[: STAY[0]]]
+        return self._that_stay(ended, APART_NEAR)
+
+    def _next_near(self, wires: list[Wire], rng: np.random.Generator) -> list[Wire]:
+        """Let Gauss–Newton steps follow other parts."""
+        unknowns = self.observation.unknowns
+        starts = [with_another_part(unknowns, wires, NEAR, rng).x for _ in range(CHILDREN)]
+        tried = sorted([self._ended(x, "few") for x in starts], key=objective_of)
+        children = [self._ended(one.x, "better") for one in tried[:GO_ON]]
+        return self._that_stay([*wires, *children], APART_NEAR)
+
+    def _after(self, small: SmallSteps, count: int, rng: np.random.Generator) -> Wire:
+        """Return the wire after so many more small steps."""
+        small.take(count, rng)
+        wire = Wire.at(self.few, small.x)
+        report = within(self.steps.progress, self.name[0], SMALL_STEPS)
+        report(self.reports, overall_misfit(self.few, wire.data), self.spread)
+        self.reports += 1
+        return wire
+
+    def _ended(self, x: FloatArray, goal: Goal) -> Wire:
+        """Return the wire where Gauss–Newton steps end."""
+        return Wire.at(self.more, self.steps.end(self.more, x, self.name[0], goal=goal).mean)
+
+    def _that_stay(self, wires: Sequence[Wire], apart: float) -> list[Wire]:
+        """Return the best of wires, and of others those with the best ends, none of them alike.
+
+        Ends are alike if half of the wire is.
+        """
+        unknowns = self.observation.unknowns
+        least = apart * unknowns.site_std(unknowns.white_noise.covariance)
+        half = unknowns.prior.sites // 2
+        ends = partial(_misfit_of_end, 0), partial(_misfit_of_end, 1)
+        ranks: list[Callable[[Wire], float]] = [objective_of, *ends]
+        parts = [slice(None), slice(half), slice(half, None)]
+        stay = list[Wire]()
+        for rank, part, count in zip(ranks, parts, STAY, strict=True):
+            most = len(stay) + count
+            for wire in sorted(wires, key=rank):
+                off = [unknowns.potential(one.x - wire.x)[part] for one in stay]
+                if len(stay) < most and all(np.sqrt((V**2).mean()) >= least for V in off):
+                    stay.append(wire)
+        return stay
+
+
+def _misfit_of_end(end: int, wire: Wire) -> float:
+    return wire.ends[end]

@@ -1,0 +1,248 @@
+"""V of every site where µ is low: small steps, parts of wires, and their exchange."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import disorder_landscape as dl
+from disorder_landscape.inference.checkpoint import Checkpoint
+from disorder_landscape.inference.invert import invert
+from disorder_landscape.inference.landscape_hint import landscape_hint
+from disorder_landscape.inference.optimum import optimum_at
+from disorder_landscape.inference.problem.noise import noise_of_channels
+from disorder_landscape.inference.problem.observation import Observation
+from disorder_landscape.inference.problem.prior import Prior
+from disorder_landscape.inference.problem.unknowns import Unknowns
+from disorder_landscape.inference.search import parts, population
+from disorder_landscape.inference.search.parts import Cut, Wire, with_another_part
+from disorder_landscape.inference.search.population import Population
+from disorder_landscape.inference.search.small_steps import BEFORE, WEIGHT, SmallSteps
+from disorder_landscape.inference.search.steps import Steps
+from disorder_landscape.inference.stages import SMALL_STEPS
+from disorder_landscape.inference.verdict import CONVERGED, verdict
+from disorder_landscape.model.disorder import smooth_noise
+from disorder_landscape.solver.quadrature import thermal_quadrature
+from landscape_data import AMPLITUDE, BIAS, NOISE, NOTHING, SITES, UNKNOWNS, linear_landscape
+from linear_data import DATA, posterior
+
+CUT = Cut(redrawn=(0.2, 0.3), taken=(0.3, 0.5), seam=(0.05, 0.06), moved=(0.1, 0.11), held=0.5)
+PRIOR = UNKNOWNS.white_noise
+STD = UNKNOWNS.site_std(PRIOR.covariance)
+
+
+@pytest.fixture
+def whole():
+    return linear_landscape()
+
+
+@pytest.fixture
+def few_steps(monkeypatch):
+    monkeypatch.setattr(population, "DRAWS", (3, 20))
+    monkeypatch.setattr(population, "SMALL", (10, 10, 10))
+    monkeypatch.setattr(population, "CHILDREN", 4)
+    monkeypatch.setattr(population, "LEAVE", 20)
+
+
+def wires_at(X, **known):
+    """Wires at these unknowns, which explain the data worse and worse."""
+    ends = known.get("ends", [(2.0, 2.0)] * len(X))
+    return [Wire(x, np.zeros(1), float(k), ends[k]) for k, x in enumerate(X)]
+
+
+def small_steps_at(whole, x):
+    return SmallSteps(whole, PRIOR, x)
+
+
+def test_small_steps_go_to_the_posterior_of_linear_data(whole):
+    exact, small = posterior(whole), small_steps_at(whole, np.zeros(len(UNKNOWNS.names)))
+    small.take(300, np.random.default_rng(0))
+    off = (small.x - exact.mean) / np.sqrt(np.diag(exact.covariance))
+    assert abs(off).max() < 0.1
+
+
+def test_far_from_the_data_the_noise_counts_as_large_as_the_misfit(whole):
+    """… so that errors a thousand times smaller than the misfit do not change the first step."""
+    ends = []
+    for noise in (1e-3, 1e-5):
+        exact = replace(whole, variance=np.full(DATA, noise**2))
+        small = small_steps_at(exact, np.zeros(len(UNKNOWNS.names)))
+        small.take(1, np.random.default_rng(0))
+        ends.append(small.x)
+    assert abs(ends[0]).max() > 1e-3
+    np.testing.assert_allclose(*ends, rtol=1e-6)
+
+
+def test_the_prior_weighs_more_where_v_is_larger_than_it_is_expected(whole):
+    small = small_steps_at(whole, 10 * np.ones(len(UNKNOWNS.names)))
+    weights = []
+    for _ in range(400):
+        small.take(1, np.random.default_rng(0))
+        weights.append(small.weight)
+    factor, largest = WEIGHT
+    assert weights[0] == factor
+    assert 1.0 < max(weights) <= largest
+    assert weights[-1] == 1.0
+    assert small.draws == BEFORE + 400
+
+
+def test_what_a_draw_of_data_says_counts_for_all_of_them(whole):
+    """The first step is the same where each draw is a part of the data, twice."""
+
+    class Twice(type(whole)):
+        def on_random_points(self, highest, counts, rng):
+            return whole
+
+    double = Twice(
+        np.tile(whole.data, 2), np.tile(whole.slope, 2), 0.0, UNKNOWNS, np.tile(whole.variance, 2)
+    )
+    x = posterior(whole).mean + 1e-4  # where the misfit is less than the noise
+    small = small_steps_at(double, x)
+    small.take(1, np.random.default_rng(0))
+    np.testing.assert_allclose(
+        small.information, 2 * (whole.slope / whole.variance) @ whole.slope.T
+    )
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_v_stays_where_a_part_is_drawn_anew(seed):
+    rng = np.random.default_rng(seed)
+    x = rng.normal(size=len(UNKNOWNS.names))
+    given = parts._redrawn(UNKNOWNS, wires_at([x]), CUT, rng)
+    assert 0 < np.count_nonzero(given.free) <= 0.3 * SITES + 1
+    assert np.all(np.diff(np.flatnonzero(given.free)) == 1)
+    np.testing.assert_allclose(given.V, UNKNOWNS.potential(x))
+
+
+def test_parts_are_drawn_anew_at_the_end_whose_data_are_explained_worse():
+    rng, counts = np.random.default_rng(0), np.zeros(SITES)
+    wires = wires_at([np.zeros(len(UNKNOWNS.names))], ends=[(9.0, 1.0)])
+    for _ in range(300):
+        counts += parts._redrawn(UNKNOWNS, wires, CUT, rng).free
+    assert counts[: SITES // 2].sum() > 5 * counts[SITES // 2 :].sum()
+    assert counts[: SITES // 2].min() > 0
+
+
+def test_another_wires_part_or_its_end_is_taken():
+    rng = np.random.default_rng(0)
+    X = rng.normal(size=(2, len(UNKNOWNS.names)))
+    V, ends = UNKNOWNS.potential(X), 0
+    for _ in range(100):
+        given = parts._exchanged(UNKNOWNS, wires_at(X, ends=[(1.0, 9.0), (9.0, 1.0)]), CUT, rng)
+        first, second = (np.isclose(given.V, one) for one in V)
+        assert np.all(first | second)
+        assert np.count_nonzero(np.diff(second.astype(int))) <= 2
+        assert np.count_nonzero(given.free) <= 4 * (0.06 * SITES + 1)
+        ends += bool(first[0] and second[-1])
+    assert ends > 30
+
+
+def test_a_part_moves_and_the_sites_about_its_ends_are_free():
+    """Each site has its own V, or that of one 0.1 of the wire away."""
+    rng, by = np.random.default_rng(0), set()
+    x = rng.normal(size=len(UNKNOWNS.names))
+    V = UNKNOWNS.potential(x)
+    for _ in range(100):
+        given = parts._moved(UNKNOWNS, wires_at([x]), CUT, rng)
+        moved = np.flatnonzero(~np.isclose(given.V, V))
+        if moved.size:
+            site = moved[moved.size // 2]
+            by |= {int(off) for off in (-3, 3) if given.V[site] == V[np.clip(site + off, 0, 29)]}
+            inside = moved[(moved > 0) & (moved < SITES - 1)]
+            assert inside.size == 0 or given.free[[moved[0], moved[-1]]].any()
+    assert by == {-3, 3}
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_what_is_not_free_is_kept_at_first_and_held_then(seed):
+    rng = np.random.default_rng(seed)
+    X = rng.normal(size=(3, len(UNKNOWNS.names)))
+    wires, V = wires_at(X), UNKNOWNS.potential(X)
+    start = with_another_part(UNKNOWNS, wires, CUT, rng)
+    off = abs(UNKNOWNS.potential(start.x) - V).min(axis=0) / STD
+    assert np.count_nonzero(off < 4 * parts.KEPT) > SITES / 3
+    width = UNKNOWNS.potential_std(start.prior.covariance) / STD
+    assert width.min() < CUT.held
+    assert np.all(np.linalg.eigvalsh(start.prior.covariance) > 0)
+
+
+def test_parameters_of_the_device_are_those_of_the_wire():
+    prior = Prior(components=None, sites=SITES, amplitude=AMPLITUDE, gamma=(0.1, 0.2))
+    unknowns = Unknowns(prior.for_measurement(NOTHING))
+    rng = np.random.default_rng(0)
+    x = rng.normal(size=len(unknowns.names))
+    for _ in range(20):
+        start = with_another_part(unknowns, wires_at([x]), CUT, rng)
+        assert abs(start.x[-1] - x[-1]) < 5 * parts.KEPT
+        assert abs(start.prior.mean[-1] - x[-1]) < abs(x[-1])
+
+
+def test_alike_wires_do_not_stay(whole):
+    rng = np.random.default_rng(0)
+    X = rng.normal(size=(2, len(UNKNOWNS.names)))
+    alike = X[0] + 1e-3 * rng.normal(size=len(UNKNOWNS.names))
+    wires = wires_at([X[0], alike, X[1]])
+    stay = Population(whole, Steps(), 0, (0,))._that_stay(wires, 0.25)
+    assert [one.objective for one in stay] == [0.0, 2.0]
+
+
+def test_wires_of_the_best_ends_stay(whole):
+    X = np.random.default_rng(0).normal(size=(20, len(UNKNOWNS.names)))
+    ends = [(20.0 - k, 1.0 + k) for k in range(20)]
+    stay = Population(whole, Steps(), 0, (0,))._that_stay(wires_at(X, ends=ends), 0.25)
+    assert [one.objective for one in stay] == [0, 1, 2, 3, 19, 18, 4, 5]
+
+
+def test_a_population_finds_the_optimum_of_linear_data(whole, few_steps):
+    told = []
+    found, goal = Population(whole, Steps(progress=told.append), 0, (0,)).towards_optimum()
+    exact = posterior(whole)
+    assert goal == "optimum"
+    assert exact.squared_distance(found) < 0.1
+    assert [step.number for step in told if step.stage == SMALL_STEPS][:3] == [0, 1, 2]
+
+
+def test_small_steps_leave_an_optimum(whole, few_steps):
+    optimum = optimum_at(whole, posterior(whole))
+    x, goal = Population(whole, Steps(), 0, (0, 1)).from_optimum(optimum)
+    assert goal == "optimum"
+    assert 0 < optimum.answer.squared_distance(x) < 10
+
+
+def test_an_interrupted_population_goes_on_alike(whole, few_steps, monkeypatch):
+    """Data that no wire explains take all generations."""
+    monkeypatch.setattr(population, "GENERATIONS", (4, 4))
+    far = replace(whole, bend=3.0)
+    expected, goal = Population(far, Steps(), 0, (0,)).towards_optimum()
+    assert goal == "place"
+    kept, steps = Checkpoint(), 0
+
+    def interrupt(step):
+        nonlocal steps
+        steps += 1
+        if steps == 10:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        Population(far, Steps(kept.cached, interrupt), 0, (0,)).towards_optimum()
+    assert 0 < len(kept) < 4
+    found, _ = Population(far, Steps(kept.cached), 0, (0,)).towards_optimum()
+    np.testing.assert_array_equal(found, expected)
+
+
+def test_v_of_every_site_is_found_at_low_mu(few_steps, monkeypatch):
+    """… lower than where ways from high µ are known to find it; data are by quadrature."""
+    monkeypatch.setattr(population, "DRAWS", (3, 100))
+    mu, fields = np.linspace(0, 0.8, 12), np.linspace(0, 0.8, 4)
+    rng, nothing = np.random.default_rng(1), replace(NOTHING, mu=mu, B=fields)
+    V = smooth_noise(rng, SITES, 3, "sum", AMPLITUDE)
+    V -= V.mean()
+    exact = thermal_quadrature([dl.Nanowire(potential=V)], mu, fields, BIAS, 0.05).conductance[0]
+    G = exact + NOISE * rng.normal(size=exact.shape)
+    observation = Observation(replace(nothing, G=G), UNKNOWNS, noise_of_channels(NOISE))
+    assert landscape_hint(observation)
+    found = invert(observation, None)
+    assert verdict(observation, found) == CONVERGED
+    std = UNKNOWNS.potential_std(found.answer.covariance)
+    assert np.sqrt((std**2).mean()) < 0.1 < V.std()
+    assert abs((UNKNOWNS.potential(found.answer.mean) - V) / std).max() < 4
