@@ -143,18 +143,16 @@ def _exchanged(
 
 
 def _moved(unknowns: Unknowns, wires: Sequence[Wire], cut: Cut, rng: np.random.Generator) -> _Given:
-    """Move a part of one wire, and free the sites about its ends."""
+    """Move a part of one wire: stretch V at one of its ends, and compress it at the other."""
     wire, length, seam = _one_of(wires, rng), _length(cut.taken, rng), _length(cut.seam, rng)
     begin, by = rng.uniform(-length, 1.0), rng.choice([-1, 1]) * _length(cut.moved, rng)
     V = unknowns.potential(wire.x)
-    moved = _between(V.size, begin, begin + length)
-    back = np.arange(V.size) - round(by * V.size)
-    V[moved] = V[np.clip(back, 0, V.size - 1)][moved]
-    free = np.zeros(V.size, dtype=bool)
-    for at in (begin, begin + length):
-        if 0 < at < 1:
-            free |= _between(V.size, at - seam - max(0, -by), at + seam + max(0, by))
-    return _Given(V, wire.x, free)
+    at = (np.arange(V.size) + 0.5) / V.size
+    corners = np.array([begin, begin, begin + length, begin + length])
+    corners += np.array([-1, 1, -1, 1]) * min(seam + abs(by), length / 2)
+    from_there = np.interp(at, corners, [0, by, by, 0])
+    moved = np.interp(at - from_there, at, V)
+    return _Given(moved, wire.x, np.zeros(V.size, dtype=bool))
 
 
 def _one_of(wires: Sequence[Wire], rng: np.random.Generator) -> Wire:

@@ -37,13 +37,16 @@ from disorder_landscape.inference.stages import SMALL_STEPS, within
 from disorder_landscape.inference.streams import Stream
 from disorder_landscape.model.parameters import FloatArray
 
-FEW, MORE = (24, 9, 7), (24, 9, 21)
+FEW, MORE = (24, 9, 7), (24, 9, 11)
 """Points of μ, B and bias, at most, of the data by which wires are compared: far from the true V,
 and near it."""
 DRAWS = 12, 300
 """Draws of the prior that a population begins with, and small steps from each."""
-CHILDREN, GO_ON = 8, 3
-"""So many wires of a generation get another part; and with the best of these steps go on."""
+CHILDREN = (16, 40), (6, 60), (3, 300)
+"""So many wires of a generation get another part, and so many small steps follow; with the best of
+these steps go on …"""
+FREE = 150
+"""… and at last with nothing held."""
 FAR = Cut(
     redrawn=(1 / 30, 1 / 2),
     taken=(1 / 15, 2 / 3),
@@ -51,8 +54,6 @@ FAR = Cut(
     moved=(1 / 100, 1 / 25),
     held=0.5,
 )
-SMALL = 100, 300, 200
-"""Small steps of each of them; of the best then; and of these, when nothing is held any more."""
 NEAR = Cut(
     redrawn=(1 / 30, 1 / 5),
     taken=(1 / 15, 2 / 3),
@@ -60,9 +61,12 @@ NEAR = Cut(
     moved=(1 / 300, 1 / 50),
     held=0.1,
 )
-IS_NEAR = 1.5
-"""Mean square misfit in units of the noise's, from which on Gauss–Newton steps follow instead."""
-APART_FAR, APART_NEAR = 0.25, 0.04
+NEAR_CHILDREN = 8, 3
+"""The same, where Gauss–Newton steps follow: few, and as many as lead to a minimum."""
+IS_NEAR, ALSO_NEAR = 1.2, 3.0
+"""Gauss–Newton steps follow instead, when the mean square misfit of the best wire is less, in units
+of the noise's; and of which of the others."""
+APART_FAR, APART_NEAR = 0.25, 0.12
 """Of wires whose V differs by less, in standard deviations of the prior, root mean square over the
 sites, only the best one stays."""
 STAY = 4, 2, 2
@@ -114,20 +118,22 @@ class Population:
         far, near = GENERATIONS
         wires = self._generation(0, self.few, self._drawn)
         for number in range(1, far):
-            if squared_misfits(self.few, best_of(wires).data).mean() < IS_NEAR:
+            if self._misfit(best_of(wires)) < IS_NEAR:
                 break
             wires = self._generation(number, self.few, partial(self._next_far, wires))
         else:
             return best_of(wires).x, "place"
-        wires = self._generation(far, self.more, partial(self._come_near, wires))
-        idle = 0
+        wires, idle = self._generation(far, self.more, partial(self._come_near, wires)), 0
         for number in range(far + 1, far + near):
             best = best_of(wires)
             if idle == IDLE and is_noise(chi_square_excess(self.more, best.data)):
-                return best.x, "optimum"
-            wires = self._generation(number, self.more, partial(self._next_near, wires))
+                x = self._with_all_data(best.x, number)
+                if x is not None:
+                    return x, "optimum"
+            follow = self._exchange_near if number % 2 else self._next_near
+            wires = self._generation(number, self.more, partial(follow, wires))
             is_better = best_of(wires).objective < best.objective - ROUGHLY
-            idle = 0 if is_better else min(idle + 1, IDLE)
+            idle = 0 if is_better else idle + 1
         return best_of(wires).x, "place"
 
     def from_optimum(self, optimum: Optimum) -> tuple[FloatArray, Goal]:
@@ -148,11 +154,15 @@ class Population:
     ) -> list[Wire]:
         """Return the wires of a generation, from an interrupted run or made now."""
         rng = np.random.default_rng([self.seed, Stream.SEARCH, *self.name, number])
-        name = ".".join(["population", *map(str, self.name), str(number)])
-        found = self.steps.cache(name, lambda: {"x": [one.x.tolist() for one in make(rng)]})
+        found = self.steps.cache(
+            self._name_of(number), lambda: {"x": [one.x.tolist() for one in make(rng)]}
+        )
         V = self.observation.unknowns.potential(np.array(found["x"]))
         self.spread = float(np.sqrt(V.var(axis=0).mean()))
         return [Wire.at(data, np.array(x)) for x in found["x"]]
+
+    def _name_of(self, part: int | str) -> str:
+        return ".".join(["population", *map(str, self.name), str(part)])
 
     def _drawn(self, rng: np.random.Generator) -> list[Wire]:
         """Return wires to which small steps lead from draws of the prior."""
@@ -165,31 +175,40 @@ class Population:
 
     def _next_far(self, wires: list[Wire], rng: np.random.Generator) -> list[Wire]:
         """Let small steps follow other parts."""
-        first, held, free = SMALL
-        unknowns, tried = self.observation.unknowns, []
-        for _ in range(CHILDREN):
-            start = with_another_part(unknowns, wires, FAR, rng)
-            small = SmallSteps(self.observation, start.prior, start.x)
-            tried.append((self._after(small, first, rng), small))
-        tried.sort(key=lambda one: objective_of(one[0]))
-        children = list[Wire]()
-        for _, small in tried[:GO_ON]:
-            self._after(small, held, rng)
-            small.prior = unknowns.white_noise
-            children.append(self._after(small, free, rng))
+        children = [Wire.at(self.few, x) for x in self._small_steps(wires, rng)]
         return self._that_stay([*wires, *children], APART_FAR)
+
+    def _small_steps(self, wires: list[Wire], rng: np.random.Generator) -> list[FloatArray]:
+        """Return where small steps from wires with other parts lead, which explain data best."""
+        unknowns = self.observation.unknowns
+        starts = [with_another_part(unknowns, wires, FAR, rng) for _ in range(CHILDREN[0][0])]
+        small = [SmallSteps(self.observation, start.prior, start.x) for start in starts]
+        for count, steps in CHILDREN:
+            small = small[:count]
+            heights = [self._after(one, steps, rng).objective for one in small]
+            small = [small[k] for k in np.argsort(heights)]
+        for one in small:
+            one.prior = unknowns.white_noise
+        return [self._after(one, FREE, rng).x for one in small]
 
     def _come_near(self, wires: list[Wire], rng: np.random.Generator) -> list[Wire]:
         """Let Gauss–Newton steps follow."""
-        ended = [self._ended(one.x, "better") for one in sorted(wires, key=objective_of)[: STAY[0]]]
-        return self._that_stay(ended, APART_NEAR)
+        best = best_of(wires)
+        near = [one for one in wires if one is best or self._misfit(one) < ALSO_NEAR]
+        return self._that_stay([self._ended(one.x, "better") for one in near], APART_NEAR)
 
     def _next_near(self, wires: list[Wire], rng: np.random.Generator) -> list[Wire]:
+        """Let small steps and then Gauss–Newton steps follow other parts."""
+        children = [self._ended(x, "better") for x in self._small_steps(wires, rng)]
+        return self._that_stay([*wires, *children], APART_NEAR)
+
+    def _exchange_near(self, wires: list[Wire], rng: np.random.Generator) -> list[Wire]:
         """Let Gauss–Newton steps follow other parts."""
         unknowns = self.observation.unknowns
-        starts = [with_another_part(unknowns, wires, NEAR, rng).x for _ in range(CHILDREN)]
+        count, go_on = NEAR_CHILDREN
+        starts = [with_another_part(unknowns, wires, NEAR, rng).x for _ in range(count)]
         tried = sorted([self._ended(x, "few") for x in starts], key=objective_of)
-        children = [self._ended(one.x, "better") for one in tried[:GO_ON]]
+        children = [self._ended(one.x, "better") for one in tried[:go_on]]
         return self._that_stay([*wires, *children], APART_NEAR)
 
     def _after(self, small: SmallSteps, count: int, rng: np.random.Generator) -> Wire:
@@ -200,6 +219,17 @@ class Population:
         report(self.reports, overall_misfit(self.few, wire.data), self.spread)
         self.reports += 1
         return wire
+
+    def _with_all_data(self, x: FloatArray, number: int) -> FloatArray | None:
+        """Return where steps with all data end, if these are explained there."""
+        name = self._name_of(f"{number}.all")
+        end = self.steps.end(self.observation, x, self.name[0], name, goal="better").mean
+        data = self.observation.simulate(end[None])[0]
+        return end if is_noise(chi_square_excess(self.observation, data)) else None
+
+    def _misfit(self, wire: Wire) -> float:
+        """Return the mean square misfit far from the true V in units of the noise's."""
+        return float(squared_misfits(self.few, wire.data).mean())
 
     def _ended(self, x: FloatArray, goal: Goal) -> Wire:
         """Return the wire where Gauss–Newton steps end."""
