@@ -9,6 +9,7 @@ import disorder_landscape as dl
 from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.landscape_hint import landscape_hint
 from disorder_landscape.inference.optimum import best, optimum_at
+from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.noise import noise_of_channels
 from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.problem.prior import Prior
@@ -23,7 +24,7 @@ from disorder_landscape.inference.stages import SMALL_STEPS
 from disorder_landscape.model.disorder import smooth_noise
 from disorder_landscape.solver.quadrature import thermal_quadrature
 from landscape_data import AMPLITUDE, BIAS, NOISE, NOTHING, SITES, UNKNOWNS, linear_landscape
-from linear_data import DATA, posterior
+from linear_data import DATA, Ending, posterior
 
 CUT = Cut(redrawn=(0.2, 0.3), taken=(0.3, 0.5), seam=(0.05, 0.06), moved=(0.1, 0.11), held=0.5)
 PRIOR = UNKNOWNS.white_noise
@@ -229,6 +230,23 @@ def test_an_interrupted_population_goes_on_alike(whole, few_steps, monkeypatch):
     assert 0 < len(kept) < 4
     found, _ = Population(far, Steps(kept.cached), 0, (0,)).towards_optimum()
     np.testing.assert_array_equal(found, expected)
+
+
+def test_where_no_wire_explains_the_data_another_population_begins(whole, monkeypatch):
+    """… which leads to the place of an optimum, as the first one does."""
+    begun = []
+
+    def fail(self):
+        begun.append(self.name)
+        return np.full(len(UNKNOWNS.names), 30.0 * len(begun)), "place"
+
+    monkeypatch.setattr(Population, "towards_optimum", fail)
+    monkeypatch.setattr(type(whole), "measurement", replace(NOTHING, mu=NOTHING.mu / 10))
+    far = Gaussian(np.full(len(UNKNOWNS.names), 30.0), 1e-4 * PRIOR.covariance)
+    optima, populations = optima_of_whole_landscape(whole, Ending(where=lambda *_: far), 0)
+    assert begun == [(0,), (1,)]
+    assert populations == 2
+    assert not optima.fits
 
 
 def test_v_of_every_site_is_found_at_low_mu(few_steps, monkeypatch):

@@ -63,7 +63,7 @@ NEAR = Cut(
 )
 NEAR_CHILDREN = 8, 3
 """The same, where Gauss–Newton steps follow: few, and as many as lead to a minimum."""
-IS_NEAR, ALSO_NEAR = 1.2, 3.0
+IS_NEAR, ALSO_NEAR = 1.5, 3.0
 """Gauss–Newton steps follow instead, when the mean square misfit of the best wire is less, in units
 of the noise's; and of which of the others."""
 APART_FAR, APART_NEAR = 0.25, 0.12
