@@ -15,11 +15,12 @@ from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.search import parts, population
-from disorder_landscape.inference.search.parts import Cut, Wire, with_another_part
+from disorder_landscape.inference.search.parts import Cut, with_another_part
 from disorder_landscape.inference.search.population import Population
 from disorder_landscape.inference.search.small_steps import BEFORE, WEIGHT, SmallSteps
 from disorder_landscape.inference.search.steps import Steps
 from disorder_landscape.inference.search.whole_landscape import optima_of_whole_landscape
+from disorder_landscape.inference.search.wires import Wire, that_stay
 from disorder_landscape.inference.stages import SMALL_STEPS
 from disorder_landscape.model.disorder import smooth_noise
 from disorder_landscape.solver.quadrature import thermal_quadrature
@@ -179,19 +180,19 @@ def test_parameters_of_the_device_are_those_of_the_wire():
         assert abs(start.prior.mean[-1] - x[-1]) < abs(x[-1])
 
 
-def test_alike_wires_do_not_stay(whole):
+def test_alike_wires_do_not_stay():
     rng = np.random.default_rng(0)
     X = rng.normal(size=(2, len(UNKNOWNS.names)))
     alike = X[0] + 1e-3 * rng.normal(size=len(UNKNOWNS.names))
     wires = wires_at([X[0], alike, X[1]])
-    stay = Population(whole, Steps(), 0, (0,))._that_stay(wires, 0.25)
+    stay = that_stay(UNKNOWNS, wires, 0.25)
     assert [one.objective for one in stay] == [0.0, 2.0]
 
 
-def test_wires_of_the_best_ends_stay(whole):
+def test_wires_of_the_best_ends_stay():
     X = np.random.default_rng(0).normal(size=(20, len(UNKNOWNS.names)))
     ends = [(20.0 - k, 1.0 + k) for k in range(20)]
-    stay = Population(whole, Steps(), 0, (0,))._that_stay(wires_at(X, ends=ends), 0.25)
+    stay = that_stay(UNKNOWNS, wires_at(X, ends=ends), 0.25)
     assert [one.objective for one in stay] == [0, 1, 2, 3, 19, 18, 4, 5]
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -11,8 +10,8 @@ from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
 from disorder_landscape.inference.problem.gaussian import Gaussian
-from disorder_landscape.inference.problem.observation import Observation, objective, squared_misfits
 from disorder_landscape.inference.problem.unknowns import Unknowns
+from disorder_landscape.inference.search.wires import Wire, best_of
 from disorder_landscape.model.parameters import FloatArray
 
 BEST = 0.6
@@ -32,39 +31,6 @@ LEAST_EXCESS = 0.02
 this excess of their mean square."""
 KEPT = 0.03
 """V of the other sites may differ by this at first, in standard deviations of the prior."""
-
-
-@dataclass(frozen=True, eq=False)
-class Wire:
-    """One of a population."""
-
-    x: FloatArray
-    """The unknowns, shape (unknown,)."""
-    data: FloatArray
-    """Simulated, shape (datum,): few data, by which wires are compared."""
-    objective: float
-    """−2 log of its posterior density with these, up to a constant."""
-    ends: tuple[float, float]
-    """Mean square misfits of G_LL and of G_RR in units of the noise's."""
-
-    @classmethod
-    def at(cls, few: Observation, x: FloatArray) -> Wire:
-        """Return the wire of unknowns (unknown,)."""
-        y = few.simulate(x[None])[0]
-        squares = squared_misfits(few, y)
-        of_ends = [squares[few.channel == end] for end in range(2)]
-        left, right = (float((of if of.size else squares).mean()) for of in of_ends)
-        return cls(x, y, float(objective(few, x, y)), (left, right))
-
-
-def objective_of(wire: Wire) -> float:
-    """Return by what wires are compared."""
-    return wire.objective
-
-
-def best_of(wires: Sequence[Wire]) -> Wire:
-    """Return the most probable wire."""
-    return min(wires, key=objective_of)
 
 
 class Cut(NamedTuple):

@@ -11,7 +11,7 @@ follow, and exchange mends what another wire has right.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, partial
 
@@ -24,15 +24,10 @@ from disorder_landscape.inference.problem.observation import (
     squared_misfits,
 )
 from disorder_landscape.inference.search.gauss_newton import ROUGHLY, Goal
-from disorder_landscape.inference.search.parts import (
-    Cut,
-    Wire,
-    best_of,
-    objective_of,
-    with_another_part,
-)
+from disorder_landscape.inference.search.parts import Cut, with_another_part
 from disorder_landscape.inference.search.small_steps import SmallSteps
 from disorder_landscape.inference.search.steps import Steps
+from disorder_landscape.inference.search.wires import Wire, best_of, objective_of, that_stay
 from disorder_landscape.inference.stages import SMALL_STEPS, within
 from disorder_landscape.inference.streams import Stream
 from disorder_landscape.model.parameters import FloatArray
@@ -69,12 +64,11 @@ of the noise's; and of which of the others."""
 APART_FAR, APART_NEAR = 0.25, 0.12
 """Of wires whose V differs by less, in standard deviations of the prior, root mean square over the
 sites, only the best one stays."""
-STAY = 4, 2, 2
-"""So many of the best wires stay, and of others those with the best left and right ends."""
 GENERATIONS = 40, 40
 """Far and near, at most."""
-IDLE = 2
-"""Generations end where the best wire explains the data, and so many have found no better one."""
+IDLE, STUCK = 2, 10
+"""Generations end where so many have found no better wire: if the best one explains the data, and
+if it does not."""
 LEAVE = 300
 """Small steps that leave an optimum, towards others near it."""
 
@@ -116,12 +110,14 @@ class Population:
     def towards_optimum(self) -> tuple[FloatArray, Goal]:
         """Return the unknowns (unknown,) of the best wire found, and what steps may reach there."""
         far, near = GENERATIONS
-        wires = self._generation(0, self.few, self._drawn)
+        wires, idle = self._generation(0, self.few, self._drawn), 0
         for number in range(1, far):
-            if self._misfit(best_of(wires)) < IS_NEAR:
+            best = best_of(wires)
+            if self._misfit(best) < IS_NEAR or idle == STUCK:
                 break
             wires = self._generation(number, self.few, partial(self._next_far, wires))
-        else:
+            idle = _idle(idle, best, wires)
+        if self._misfit(best_of(wires)) >= IS_NEAR:
             return best_of(wires).x, "place"
         wires, idle = self._generation(far, self.more, partial(self._come_near, wires)), 0
         for number in range(far + 1, far + near):
@@ -130,10 +126,11 @@ class Population:
                 x = self._with_all_data(best.x, number)
                 if x is not None:
                     return x, "optimum"
+            if idle == STUCK:
+                break
             follow = self._exchange_near if number % 2 else self._next_near
             wires = self._generation(number, self.more, partial(follow, wires))
-            is_better = best_of(wires).objective < best.objective - ROUGHLY
-            idle = 0 if is_better else idle + 1
+            idle = _idle(idle, best, wires)
         return best_of(wires).x, "place"
 
     def from_optimum(self, optimum: Optimum) -> tuple[FloatArray, Goal]:
@@ -171,12 +168,12 @@ class Population:
         for x in prior.draw_apart(rng, count):
             small = SmallSteps(self.observation, prior, x)
             wires.append(self._after(small, steps, rng))
-        return self._that_stay(wires, APART_FAR)
+        return that_stay(self.observation.unknowns, wires, APART_FAR)
 
     def _next_far(self, wires: list[Wire], rng: np.random.Generator) -> list[Wire]:
         """Let small steps follow other parts."""
         children = [Wire.at(self.few, x) for x in self._small_steps(wires, rng)]
-        return self._that_stay([*wires, *children], APART_FAR)
+        return that_stay(self.observation.unknowns, [*wires, *children], APART_FAR)
 
     def _small_steps(self, wires: list[Wire], rng: np.random.Generator) -> list[FloatArray]:
         """Return where small steps from wires with other parts lead, which explain data best."""
@@ -195,12 +192,14 @@ class Population:
         """Let Gauss–Newton steps follow."""
         best = best_of(wires)
         near = [one for one in wires if one is best or self._misfit(one) < ALSO_NEAR]
-        return self._that_stay([self._ended(one.x, "better") for one in near], APART_NEAR)
+        return that_stay(
+            self.observation.unknowns, [self._ended(one.x, "better") for one in near], APART_NEAR
+        )
 
     def _next_near(self, wires: list[Wire], rng: np.random.Generator) -> list[Wire]:
         """Let small steps and then Gauss–Newton steps follow other parts."""
         children = [self._ended(x, "better") for x in self._small_steps(wires, rng)]
-        return self._that_stay([*wires, *children], APART_NEAR)
+        return that_stay(self.observation.unknowns, [*wires, *children], APART_NEAR)
 
     def _exchange_near(self, wires: list[Wire], rng: np.random.Generator) -> list[Wire]:
         """Let Gauss–Newton steps follow other parts."""
@@ -209,7 +208,7 @@ class Population:
         starts = [with_another_part(unknowns, wires, NEAR, rng).x for _ in range(count)]
         tried = sorted([self._ended(x, "few") for x in starts], key=objective_of)
         children = [self._ended(one.x, "better") for one in tried[:go_on]]
-        return self._that_stay([*wires, *children], APART_NEAR)
+        return that_stay(self.observation.unknowns, [*wires, *children], APART_NEAR)
 
     def _after(self, small: SmallSteps, count: int, rng: np.random.Generator) -> Wire:
         """Return the wire after so many more small steps."""
@@ -235,26 +234,7 @@ class Population:
         """Return the wire where Gauss–Newton steps end."""
         return Wire.at(self.more, self.steps.end(self.more, x, self.name[0], goal=goal).mean)
 
-    def _that_stay(self, wires: Sequence[Wire], apart: float) -> list[Wire]:
-        """Return the best of wires, and of others those with the best ends, none of them alike.
 
-        Ends are alike if half of the wire is.
-        """
-        unknowns = self.observation.unknowns
-        least = apart * unknowns.site_std(unknowns.white_noise.covariance)
-        half = unknowns.prior.sites // 2
-        ends = partial(_misfit_of_end, 0), partial(_misfit_of_end, 1)
-        ranks: list[Callable[[Wire], float]] = [objective_of, *ends]
-        parts = [slice(None), slice(half), slice(half, None)]
-        stay = list[Wire]()
-        for rank, part, count in zip(ranks, parts, STAY, strict=True):
-            most = len(stay) + count
-            for wire in sorted(wires, key=rank):
-                off = [unknowns.potential(one.x - wire.x)[part] for one in stay]
-                if len(stay) < most and all(np.sqrt((V**2).mean()) >= least for V in off):
-                    stay.append(wire)
-        return stay
-
-
-def _misfit_of_end(end: int, wire: Wire) -> float:
-    return wire.ends[end]
+def _idle(before: int, best: Wire, wires: list[Wire]) -> int:
+    """Return how many generations have found no better wire, the last one included."""
+    return 0 if best_of(wires).objective < best.objective - ROUGHLY else before + 1
