@@ -24,8 +24,11 @@ ENDS = 0.4
 """How often the wire of the best left end then gets the right end of the wire of the best one."""
 LEAST_END = 0.15
 """In shares of the wire. Ends are no shorter."""
+IMPROBABLE = 0.5
+"""How often parts that are drawn anew, or the ends of those that move, are where V is large: more
+often by its fourth power. (Where half a wavelength is missing, a well too deep stands for it.)"""
 DEPTH = 0.55
-"""Parts that are drawn anew are of this share of the wire, from one end on: …"""
+"""Else they are in this share of the wire, from one end on: …"""
 LEAST_EXCESS = 0.02
 """… more often from the one whose conductance is explained worse. Misfits are the noise's up to
 this excess of their mean square."""
@@ -81,11 +84,8 @@ def _redrawn(
 ) -> _Given:
     """Free a part of one wire, where its data say that V may be wrong."""
     wire = _one_of(wires, rng)
-    left, right = (max(end - 1, LEAST_EXCESS) for end in wire.ends)
-    depth = DEPTH * rng.random()
-    middle = depth if rng.random() < left / (left + right) else 1 - depth
-    half = _length(cut.redrawn, rng) / 2
-    V = unknowns.potential(wire.x)
+    V, half = unknowns.potential(wire.x), _length(cut.redrawn, rng) / 2
+    middle = _doubtful(V, wire, rng)
     return _Given(V, wire.x, _between(V.size, middle - half, middle + half))
 
 
@@ -109,16 +109,28 @@ def _exchanged(
 
 
 def _moved(unknowns: Unknowns, wires: Sequence[Wire], cut: Cut, rng: np.random.Generator) -> _Given:
-    """Move a part of one wire: stretch V at one of its ends, and compress it at the other."""
+    """Move a part of one wire, and free the sites about its ends."""
     wire, length, seam = _one_of(wires, rng), _length(cut.taken, rng), _length(cut.seam, rng)
-    begin, by = rng.uniform(-length, 1.0), rng.choice([-1, 1]) * _length(cut.moved, rng)
+    by = rng.choice([-1, 1]) * _length(cut.moved, rng)
     V = unknowns.potential(wire.x)
-    at = (np.arange(V.size) + 0.5) / V.size
-    corners = np.array([begin, begin, begin + length, begin + length])
-    corners += np.array([-1, 1, -1, 1]) * min(seam + abs(by), length / 2)
-    from_there = np.interp(at, corners, [0, by, by, 0])
-    moved = np.interp(at - from_there, at, V)
-    return _Given(moved, wire.x, np.zeros(V.size, dtype=bool))
+    begin = _doubtful(V, wire, rng) - rng.choice([0, length])
+    moved = _between(V.size, begin, begin + length)
+    from_there = np.clip(np.arange(V.size) - round(by * V.size), 0, V.size - 1)
+    free = np.zeros(V.size, dtype=bool)
+    for at in (begin, begin + length):
+        if 0 < at < 1:
+            free |= _between(V.size, at - seam - max(0, -by), at + seam + max(0, by))
+    return _Given(np.where(moved, V[from_there], V), wire.x, free)
+
+
+def _doubtful(V: FloatArray, wire: Wire, rng: np.random.Generator) -> float:
+    """Return a place, in shares of the wire, where its V (site,) may be wrong."""
+    if rng.random() < IMPROBABLE:
+        odds = V**4 + np.finfo(np.float64).tiny
+        return float((rng.choice(V.size, p=odds / odds.sum()) + 0.5) / V.size)
+    left, right = (max(end - 1, LEAST_EXCESS) for end in wire.ends)
+    depth = DEPTH * rng.random()
+    return float(depth if rng.random() < left / (left + right) else 1 - depth)
 
 
 def _one_of(wires: Sequence[Wire], rng: np.random.Generator) -> Wire:
