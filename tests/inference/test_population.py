@@ -19,7 +19,10 @@ from disorder_landscape.inference.search.parts import Cut, with_another_part
 from disorder_landscape.inference.search.population import Population
 from disorder_landscape.inference.search.small_steps import BEFORE, WEIGHT, SmallSteps
 from disorder_landscape.inference.search.steps import Steps
-from disorder_landscape.inference.search.whole_landscape import optima_of_whole_landscape
+from disorder_landscape.inference.search.whole_landscape import (
+    POPULATIONS,
+    optima_of_whole_landscape,
+)
 from disorder_landscape.inference.search.wires import Wire, that_stay
 from disorder_landscape.inference.stages import SMALL_STEPS
 from disorder_landscape.model.disorder import smooth_noise
@@ -224,9 +227,8 @@ def test_small_steps_leave_an_optimum(whole, few_steps):
     assert 0 < optimum.answer.squared_distance(x) < 10
 
 
-def test_an_interrupted_population_goes_on_alike(whole, few_steps, monkeypatch):
-    """Data that no wire explains take all generations."""
-    monkeypatch.setattr(population, "GENERATIONS", (4, 4))
+def test_an_interrupted_population_goes_on_alike(whole, few_steps):
+    """Of data that no wire explains."""
     far = replace(whole, bend=3.0)
     expected, goal = Population(far, Steps(), 0, (0,)).towards_optimum()
     assert goal == "place"
@@ -257,8 +259,8 @@ def test_where_no_wire_explains_the_data_another_population_begins(whole, monkey
     monkeypatch.setattr(type(whole), "measurement", replace(NOTHING, mu=NOTHING.mu / 10))
     far = Gaussian(np.full(len(UNKNOWNS.names), 30.0), 1e-4 * PRIOR.covariance)
     optima, populations = optima_of_whole_landscape(whole, Ending(where=lambda *_: far), 0)
-    assert begun == [(0,), (1,)]
-    assert populations == 2
+    assert begun == [(number,) for number in range(POPULATIONS)]
+    assert populations == POPULATIONS
     assert not optima.fits
 
 
@@ -280,3 +282,17 @@ def test_v_of_every_site_is_found_at_low_mu(few_steps, monkeypatch):
     std = UNKNOWNS.potential_std(answer.covariance)
     assert np.sqrt((std**2).mean()) < 0.1 < V.std()
     assert abs((UNKNOWNS.potential(answer.mean) - V) / std).max() < 4
+
+
+def test_wires_of_former_populations_join_where_no_better_ones_are_found(
+    whole, few_steps, monkeypatch
+):
+    far = Wire.at(whole, np.full(len(UNKNOWNS.names), 30.0))
+    former = [Wire.at(whole, posterior(whole).mean)]
+    monkeypatch.setattr(Population, "_drawn", lambda self, rng: [far])
+    monkeypatch.setattr(Population, "_next_far", lambda self, rng: self.wires)
+    x, goal = Population(whole, Steps(), 0, (0,)).towards_optimum()
+    np.testing.assert_array_equal(x, far.x)
+    assert goal == "place"
+    _, goal = Population(whole, Steps(), 0, (1,), former).towards_optimum()
+    assert goal == "optimum"

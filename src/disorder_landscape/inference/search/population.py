@@ -11,9 +11,9 @@ follow, and exchange mends what another wire has right.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from functools import cached_property, partial
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -65,11 +65,9 @@ of the noise's; and of which of the others."""
 APART_FAR, APART_NEAR = 0.25, 0.12
 """Of wires whose V differs by less, in standard deviations of the prior, root mean square over the
 sites, only the best one stays."""
-GENERATIONS = 40, 40
-"""Far and near, at most."""
-IDLE, STUCK = 2, 10
-"""Generations end where so many have found no better wire: if the best one explains the data, and
-if it does not."""
+IDLE, STUCK = 2, (4, 10)
+"""Generations end where so many have found no better wire: if the best one explains the data; and
+if it does not, far and near. (Far, populations that arrived have found better ones in each.)"""
 LEAVE = 300
 """Small steps that leave an optimum, towards others near it."""
 
@@ -87,16 +85,21 @@ class Population:
     seed : int
     name : tuple of int
         The number of this population, and that of a start from an optimum, if it is one.
+    others : sequence of Wire
+        Of former populations, which join where no better wires are found.
     """
 
     observation: Observation
     steps: Steps
     seed: int
     name: tuple[int, ...]
+    others: Sequence[Wire] = ()
     reports: int = 0
     """How often whom it tells has been told."""
     spread: float = 0.0
     """What it tells: the standard deviation of V among the wires in meV, as `Step.spread`."""
+    wires: list[Wire] = field(default_factory=list)
+    """The present generation."""
 
     @cached_property
     def few(self) -> Observation:
@@ -110,29 +113,42 @@ class Population:
 
     def towards_optimum(self) -> tuple[FloatArray, Goal]:
         """Return the unknowns (unknown,) of the best wire found, and what steps may reach there."""
-        far, near = GENERATIONS
-        wires, idle = self._generation(0, self.few, self._drawn), 0
-        for number in range(1, far):
-            best = best_of(wires)
-            if self._misfit(best) < IS_NEAR or idle == STUCK:
-                break
-            wires = self._generation(number, self.few, partial(self._next_far, wires))
-            idle = _idle(idle, best, wires)
-        if self._misfit(best_of(wires)) >= IS_NEAR:
-            return best_of(wires).x, "place"
-        wires, idle = self._generation(far, self.more, partial(self._come_near, wires)), 0
-        for number in range(far + 1, far + near):
-            best = best_of(wires)
+        self.wires = self._generation(0, self.few, self._drawn)
+        number = self._far_generations(1)
+        if self._is_far and self.others:
+            wires = [*self.wires, *(Wire.at(self.few, one.x) for one in self.others)]
+            self.wires = that_stay(self.observation.unknowns, wires, APART_FAR)
+            number = self._far_generations(number)
+        return (best_of(self.wires).x, "place") if self._is_far else self._near_generations(number)
+
+    @property
+    def _is_far(self) -> bool:
+        return self._misfit(best_of(self.wires)) >= IS_NEAR
+
+    def _far_generations(self, number: int) -> int:
+        """Go on to the true V until no better wires are found; return the next one's number."""
+        idle = 0
+        while self._is_far and idle < STUCK[0]:
+            best = best_of(self.wires)
+            self.wires = self._generation(number, self.few, self._next_far)
+            idle = _idle(idle, best, self.wires)
+            number += 1
+        return number
+
+    def _near_generations(self, number: int) -> tuple[FloatArray, Goal]:
+        """Do so near it; return unknowns (unknown,), and what steps may reach there."""
+        self.wires, idle = self._generation(number, self.more, self._come_near), 0
+        while idle < STUCK[1]:
+            best = best_of(self.wires)
             if idle == IDLE and is_noise(chi_square_excess(self.more, best.data)):
                 x = self._with_all_data(best.x, number)
                 if x is not None:
                     return x, "optimum"
-            if idle == STUCK:
-                break
+            number += 1
             follow = self._exchange_near if number % 2 else self._next_near
-            wires = self._generation(number, self.more, partial(follow, wires))
-            idle = _idle(idle, best, wires)
-        return best_of(wires).x, "place"
+            self.wires = self._generation(number, self.more, follow)
+            idle = _idle(idle, best, self.wires)
+        return best_of(self.wires).x, "place"
 
     def from_optimum(self, optimum: Optimum) -> tuple[FloatArray, Goal]:
         """Leave an optimum by small steps."""
@@ -171,15 +187,15 @@ class Population:
             wires.append(self._after(small, steps, rng))
         return that_stay(self.observation.unknowns, wires, APART_FAR)
 
-    def _next_far(self, wires: list[Wire], rng: np.random.Generator) -> list[Wire]:
+    def _next_far(self, rng: np.random.Generator) -> list[Wire]:
         """Let small steps follow other parts."""
-        children = [Wire.at(self.few, x) for x in self._small_steps(wires, rng)]
-        return that_stay(self.observation.unknowns, [*wires, *children], APART_FAR)
+        children = [Wire.at(self.few, x) for x in self._small_steps(rng)]
+        return that_stay(self.observation.unknowns, [*self.wires, *children], APART_FAR)
 
-    def _small_steps(self, wires: list[Wire], rng: np.random.Generator) -> list[FloatArray]:
+    def _small_steps(self, rng: np.random.Generator) -> list[FloatArray]:
         """Return where small steps from wires with other parts lead, which explain data best."""
         unknowns = self.observation.unknowns
-        starts = [with_another_part(unknowns, wires, FAR, rng) for _ in range(CHILDREN[0][0])]
+        starts = [with_another_part(unknowns, self.wires, FAR, rng) for _ in range(CHILDREN[0][0])]
         small = [SmallSteps(self.observation, start.prior, start.x) for start in starts]
         for count, steps in CHILDREN:
             small = small[:count]
@@ -189,27 +205,27 @@ class Population:
             one.prior = unknowns.white_noise
         return [self._after(one, FREE, rng).x for one in small]
 
-    def _come_near(self, wires: list[Wire], rng: np.random.Generator) -> list[Wire]:
+    def _come_near(self, rng: np.random.Generator) -> list[Wire]:
         """Let Gauss–Newton steps follow."""
-        best = best_of(wires)
-        near = [one for one in wires if one is best or self._misfit(one) < ALSO_NEAR]
+        best = best_of(self.wires)
+        near = [one for one in self.wires if one is best or self._misfit(one) < ALSO_NEAR]
         return that_stay(
             self.observation.unknowns, [self._ended(one.x, "better") for one in near], APART_NEAR
         )
 
-    def _next_near(self, wires: list[Wire], rng: np.random.Generator) -> list[Wire]:
+    def _next_near(self, rng: np.random.Generator) -> list[Wire]:
         """Let small steps and then Gauss–Newton steps follow other parts."""
-        children = [self._ended(x, "better") for x in self._small_steps(wires, rng)]
-        return that_stay(self.observation.unknowns, [*wires, *children], APART_NEAR)
+        children = [self._ended(x, "better") for x in self._small_steps(rng)]
+        return that_stay(self.observation.unknowns, [*self.wires, *children], APART_NEAR)
 
-    def _exchange_near(self, wires: list[Wire], rng: np.random.Generator) -> list[Wire]:
+    def _exchange_near(self, rng: np.random.Generator) -> list[Wire]:
         """Let Gauss–Newton steps follow other parts."""
         unknowns = self.observation.unknowns
         count, go_on = NEAR_CHILDREN
-        starts = [with_another_part(unknowns, wires, NEAR, rng).x for _ in range(count)]
+        starts = [with_another_part(unknowns, self.wires, NEAR, rng).x for _ in range(count)]
         tried = sorted([self._ended(x, "few") for x in starts], key=objective_of)
         children = [self._ended(one.x, "better") for one in tried[:go_on]]
-        return that_stay(self.observation.unknowns, [*wires, *children], APART_NEAR)
+        return that_stay(self.observation.unknowns, [*self.wires, *children], APART_NEAR)
 
     def _after(self, small: SmallSteps, count: int, rng: np.random.Generator) -> Wire:
         """Return the wire after so many more small steps."""

@@ -34,6 +34,7 @@ from disorder_landscape.inference.search.gauss_newton import Goal
 from disorder_landscape.inference.search.optima import Optima
 from disorder_landscape.inference.search.population import Population
 from disorder_landscape.inference.search.steps import Steps
+from disorder_landscape.inference.search.wires import Wire
 from disorder_landscape.inference.streams import Stream
 from disorder_landscape.model.parameters import FloatArray
 
@@ -60,7 +61,7 @@ BACK = 5
 """Where more data are not explained then, steps go back to draws, at most so many times."""
 AGAIN = range(12, 20, 2)
 """Ways that leave the best optimum begin with so many lines, by turns."""
-POPULATIONS = 2
+POPULATIONS = 4
 """At most, where µ is low."""
 STARTS = 3, 8
 """At least, and at most: a way down that leads to an optimum that fits, and those that leave it."""
@@ -74,11 +75,14 @@ def optima_of_whole_landscape(
     some = in_fields.on_few_points(*MORE)
     optima = Optima(in_fields, steps, STARTS)
     highest, needed = highest_and_needed_mu(observation)
+    others = list[Wire]()
     for number in range(WAYS_DOWN if highest >= needed else POPULATIONS):
         way: _Way | Population = _Way(in_fields, some, steps, seed, (number,))
         if highest < needed:
-            way = Population(in_fields, steps, seed, (number,))
+            way = Population(in_fields, steps, seed, (number,), others)
         x, goal = way.towards_optimum()
+        if isinstance(way, Population):
+            others = way.wires
         optima.start_at(x, number, goal)
         until = optima.starts + STARTS[1] - 1
         while optima.fits and not optima.is_settled and optima.starts < until:
