@@ -26,11 +26,12 @@ from disorder_landscape.inference.search.whole_landscape import (
 from disorder_landscape.inference.search.wires import Wire, that_stay
 from disorder_landscape.inference.stages import SMALL_STEPS
 from disorder_landscape.model.disorder import smooth_noise
+from disorder_landscape.model.parameters import hopping
 from disorder_landscape.solver.quadrature import thermal_quadrature
 from landscape_data import AMPLITUDE, BIAS, NOISE, NOTHING, SITES, UNKNOWNS, linear_landscape
 from linear_data import DATA, Ending, posterior
 
-CUT = Cut(redrawn=(0.2, 0.3), taken=(0.3, 0.5), seam=(0.05, 0.06), moved=(0.1, 0.11), held=0.5)
+CUT = Cut(redrawn=(0.2, 0.3), taken=(0.3, 0.5), seam=(0.05, 0.06), held=0.5)
 PRIOR = UNKNOWNS.white_noise
 STD = UNKNOWNS.site_std(PRIOR.covariance)
 
@@ -119,25 +120,13 @@ def test_v_stays_where_a_part_is_drawn_anew(seed):
     np.testing.assert_allclose(given.V, UNKNOWNS.potential(x))
 
 
-def test_parts_are_drawn_anew_at_the_end_whose_data_are_explained_worse(monkeypatch):
-    monkeypatch.setattr(parts, "IMPROBABLE", 0.0)
+def test_parts_are_drawn_anew_at_the_end_whose_data_are_explained_worse():
     rng, counts = np.random.default_rng(0), np.zeros(SITES)
     wires = wires_at([np.zeros(len(UNKNOWNS.names))], ends=[(9.0, 1.0)])
     for _ in range(300):
         counts += parts._redrawn(UNKNOWNS, wires, CUT, rng).free
     assert counts[: SITES // 2].sum() > 5 * counts[SITES // 2 :].sum()
     assert counts[: SITES // 2].min() > 0
-
-
-def test_parts_are_drawn_anew_where_v_is_improbable(monkeypatch):
-    monkeypatch.setattr(parts, "IMPROBABLE", 1.0)
-    rng, counts = np.random.default_rng(0), np.zeros(SITES)
-    well = -np.exp(-((np.arange(SITES) - 20) ** 2) / 8.0)
-    x = np.linalg.lstsq(UNKNOWNS.to_potential, well, rcond=None)[0]
-    for _ in range(100):
-        counts += parts._redrawn(UNKNOWNS, wires_at([x]), CUT, rng).free
-    assert counts[20] > 90
-    assert counts[:10].sum() == 0
 
 
 def test_another_wires_part_or_its_end_is_taken():
@@ -154,34 +143,48 @@ def test_another_wires_part_or_its_end_is_taken():
     assert ends > 30
 
 
-def test_a_part_moves_and_the_sites_about_its_ends_are_free():
-    """Each site has its own V, or that of one 0.1 of the wire away."""
-    rng, by = np.random.default_rng(0), set()
-    x = rng.normal(size=len(UNKNOWNS.names))
+def test_a_part_moves_half_a_wavelength_into_a_deep_well(monkeypatch):
+    """… from either side of it. Both ends of the part are free."""
+    kinetic = hopping(0.03, 10.0) * (np.pi / 3) ** 2 / STD  # of a wavelength of six sites
+    monkeypatch.setattr(parts, "KINETIC", (kinetic, kinetic))
+    rng, sides = np.random.default_rng(0), set()
+    well = np.zeros(SITES)
+    well[14:17] = -3.0
+    x = np.linalg.lstsq(UNKNOWNS.to_potential, well + 0.1 * rng.normal(size=SITES), rcond=None)[0]
     V = UNKNOWNS.potential(x)
-    for _ in range(100):
-        given = parts._moved(UNKNOWNS, wires_at([x]), CUT._replace(moved=(0.1, 0.1001)), rng)
+    for _ in range(50):
+        given = parts._moved(UNKNOWNS, wires_at([x]), CUT, rng)
         moved = np.flatnonzero(~np.isclose(given.V, V))
-        if moved.size < 5:
-            continue
-        there = {off: np.clip(moved + off, 0, SITES - 1) for off in (-3, 3)}
-        by |= {off for off in (-3, 3) if np.allclose(given.V[moved], V[there[off]])}
-        ends = [end for end in (moved[0], moved[-1]) if 3 < end < SITES - 4]
-        assert all(given.free[end] for end in ends)
-    assert by == {-3, 3}
+        assert given.free[14:17].all()
+        assert moved.size <= 0.5 * SITES + 1
+        for side in (-1, 1):  # what was three sites farther from the well is there now
+            there = np.clip(moved + 3 * side, 0, SITES - 1)
+            sides |= {side} if np.allclose(given.V[moved], V[there]) else set()
+        assert not given.free.all()
+    assert sides == {-1, 1}
 
 
 @pytest.mark.parametrize("seed", range(10))
 def test_what_is_not_free_is_kept_at_first_and_held_then(seed):
     rng = np.random.default_rng(seed)
+    wires = wires_at(rng.normal(size=(3, len(UNKNOWNS.names))))
+    given = parts._redrawn(UNKNOWNS, wires, CUT, rng)
+    kept, held = (parts._prior_given(UNKNOWNS, given, error) for error in (parts.KEPT, CUT.held))
+    off = UNKNOWNS.potential(kept.draw(rng, 2)[0]) - given.V
+    assert abs(off[~given.free]).max() < 5 * parts.KEPT * STD
+    assert abs(off[given.free]).max() > 2 * parts.KEPT * STD
+    for prior, error in ((kept, parts.KEPT), (held, CUT.held)):
+        assert UNKNOWNS.potential_std(prior.covariance)[~given.free].max() <= error * STD
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_starts_are_at_draws_with_what_is_not_free_as_it_was(seed):
+    rng = np.random.default_rng(seed)
     X = rng.normal(size=(3, len(UNKNOWNS.names)))
-    wires, V = wires_at(X), UNKNOWNS.potential(X)
-    start = with_another_part(UNKNOWNS, wires, CUT, rng)
-    off = abs(UNKNOWNS.potential(start.x) - V).min(axis=0) / STD
-    assert np.count_nonzero(off < 4 * parts.KEPT) > SITES / 3
-    width = UNKNOWNS.potential_std(start.prior.covariance) / STD
-    assert width.min() < CUT.held
-    assert np.all(np.linalg.eigvalsh(start.prior.covariance) > 0)
+    start = with_another_part(UNKNOWNS, wires_at(X), CUT, rng)
+    off = abs(UNKNOWNS.potential(start.x) - UNKNOWNS.potential(X)).min(axis=0)
+    assert np.count_nonzero(off < 5 * parts.KEPT * STD) > SITES / 5
+    assert UNKNOWNS.potential_std(start.prior.covariance).min() < CUT.held * STD
 
 
 def test_parameters_of_the_device_are_those_of_the_wire():

@@ -47,14 +47,12 @@ FAR = Cut(
     redrawn=(1 / 30, 1 / 2),
     taken=(1 / 15, 2 / 3),
     seam=(1 / 60, 1 / 10),
-    moved=(1 / 100, 1 / 25),
     held=0.5,
 )
 NEAR = Cut(
     redrawn=(1 / 30, 1 / 5),
     taken=(1 / 15, 2 / 3),
     seam=(1 / 100, 1 / 100),
-    moved=(1 / 300, 1 / 50),
     held=0.1,
 )
 NEAR_CHILDREN = 8, 3

@@ -17,6 +17,8 @@ At last steps must go to the optimum itself: valleys bend, and steps that are co
 some 50 µeV away, where the noise explains the data all but as well. There are other optima near it
 where it does so, too. So steps with a draw of fewer lines leave the best one, and go down from
 there once more, until enough of these ways have come back to it.
+
+Where μ does not go up so high, a population of wires searches instead (`population`).
 """
 
 from __future__ import annotations
@@ -70,7 +72,7 @@ STARTS = 3, 8
 def optima_of_whole_landscape(
     observation: Observation, steps: Steps, seed: int
 ) -> tuple[Optima, int]:
-    """Return the optima to which steps over lower and lower μ lead, and how many ways down."""
+    """Return the optima that are found, and how many ways down or populations it took."""
     in_fields = _in_fields(observation)
     some = in_fields.on_few_points(*MORE)
     optima = Optima(in_fields, steps, STARTS)
