@@ -31,7 +31,14 @@ from disorder_landscape.solver.quadrature import thermal_quadrature
 from landscape_data import AMPLITUDE, BIAS, NOISE, NOTHING, SITES, UNKNOWNS, linear_landscape
 from linear_data import DATA, Ending, posterior
 
-CUT = Cut(redrawn=(0.2, 0.3), taken=(0.3, 0.5), seam=(0.05, 0.06), held=0.5)
+CUT = Cut(
+    redrawn=(0.2, 0.3),
+    taken=(0.3, 0.5),
+    seam=(0.05, 0.06),
+    held=0.5,
+    exchanged=0.3,
+    moved=0.4,
+)
 PRIOR = UNKNOWNS.white_noise
 STD = UNKNOWNS.site_std(PRIOR.covariance)
 

@@ -16,13 +16,11 @@ from disorder_landscape.model.parameters import FloatArray, hopping
 
 BEST = 0.6
 """How often the best wire gets another part, and not any of them."""
-EXCHANGED, MOVED = 0.3, 0.4
-"""How often the part is another wire's, where there are several; and how often the wire's own, half
-a wavelength away. (Of two wires V was right at one end, and behind a well 2 meV too deep it was
-seven sites too far from there for more than 100 sites. Small steps do not change that; after such a
-move of one of them they led to the true V from three starts of eight.)"""
 KINETIC = 3.0, 7.0
-"""Kinetic energies of that wavelength, in standard deviations of V."""
+"""Kinetic energies of the wavelength by half of which parts move, in standard deviations of V. (Of
+two wires V was right at one end, and behind a well 2 meV too deep it was seven sites too far from
+there for more than 100 sites. Small steps do not change that. After such a move of one of them they
+led to the true V from three starts of eight.)"""
 ENDS = 0.4
 """How often the wire of the best left end then gets the right end of the wire of the best one."""
 LEAST_END = 0.15
@@ -47,6 +45,10 @@ class Cut(NamedTuple):
     """… and what is free on either side of its ends."""
     held: float
     """All other V may change by this, in standard deviations of the prior."""
+    exchanged: float
+    """How often the part is another wire's, where there are several; …"""
+    moved: float
+    """… and how often it is the wire's own, moved by half a wavelength."""
 
 
 class Start(NamedTuple):
@@ -71,7 +73,7 @@ def with_another_part(
 ) -> Start:
     """Return a start at one of the wires with another part: drawn from the prior given the rest."""
     kinds = [_exchanged, _moved, _redrawn] if len(wires) > 1 else [_moved, _redrawn]
-    odds = np.array([EXCHANGED, MOVED, 1 - EXCHANGED - MOVED])[-len(kinds) :]
+    odds = np.array([cut.exchanged, cut.moved, 1 - cut.exchanged - cut.moved])[-len(kinds) :]
     given = kinds[rng.choice(len(kinds), p=odds / odds.sum())](unknowns, wires, cut, rng)
     x = _prior_given(unknowns, given, KEPT).draw_apart(rng, 1)[0]
     return Start(x, _prior_given(unknowns, given, cut.held))

@@ -48,12 +48,16 @@ FAR = Cut(
     taken=(1 / 15, 2 / 3),
     seam=(1 / 60, 1 / 10),
     held=0.5,
+    exchanged=0.3,
+    moved=0.4,
 )
 NEAR = Cut(
     redrawn=(1 / 30, 1 / 5),
     taken=(1 / 15, 2 / 3),
     seam=(1 / 100, 1 / 100),
     held=0.1,
+    exchanged=0.6,
+    moved=0.0,
 )
 NEAR_CHILDREN = 8, 3
 """The same, where Gauss–Newton steps follow: few, and as many as lead to a minimum."""
