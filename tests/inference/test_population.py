@@ -36,8 +36,6 @@ CUT = Cut(
     taken=(0.3, 0.5),
     seam=(0.05, 0.06),
     held=0.5,
-    exchanged=0.3,
-    moved=0.4,
 )
 PRIOR = UNKNOWNS.white_noise
 STD = UNKNOWNS.site_std(PRIOR.covariance)
@@ -51,9 +49,11 @@ def whole():
 @pytest.fixture
 def few_steps(monkeypatch):
     monkeypatch.setattr(population, "DRAWS", (3, 20))
-    monkeypatch.setattr(population, "CHILDREN", ((4, 10), (2, 10)))
-    monkeypatch.setattr(population, "FREE", 10)
-    monkeypatch.setattr(population, "NEAR_CHILDREN", (3, 1))
+    kinds = [(parts.exchanged, 2), (parts.moved, 1), (parts.redrawn, 1)]
+    monkeypatch.setattr(population, "CHILDREN", kinds)
+    monkeypatch.setattr(population, "NEAR_CHILDREN", kinds)
+    monkeypatch.setattr(population, "GO_ON", 1)
+    monkeypatch.setattr(population, "SMALL", (10, 10, 10))
     monkeypatch.setattr(population, "LEAVE", 20)
 
 
@@ -128,7 +128,7 @@ def test_what_a_draw_of_data_says_counts_for_all_of_them(whole):
 def test_v_stays_where_a_part_is_drawn_anew(seed):
     rng = np.random.default_rng(seed)
     x = rng.normal(size=len(UNKNOWNS.names))
-    given = parts._redrawn(UNKNOWNS, wires_at([x]), CUT, rng)
+    given = parts.redrawn(UNKNOWNS, wires_at([x]), CUT, rng)
     assert 0 < np.count_nonzero(given.free) <= 0.3 * SITES + 1
     assert np.all(np.diff(np.flatnonzero(given.free)) == 1)
     np.testing.assert_allclose(given.V, UNKNOWNS.potential(x))
@@ -138,7 +138,7 @@ def test_parts_are_drawn_anew_at_the_end_whose_data_are_explained_worse():
     rng, counts = np.random.default_rng(0), np.zeros(SITES)
     wires = wires_at([np.zeros(len(UNKNOWNS.names))], ends=[(9.0, 1.0)])
     for _ in range(300):
-        counts += parts._redrawn(UNKNOWNS, wires, CUT, rng).free
+        counts += parts.redrawn(UNKNOWNS, wires, CUT, rng).free
     assert counts[: SITES // 2].sum() > 5 * counts[SITES // 2 :].sum()
     assert counts[: SITES // 2].min() > 0
 
@@ -148,7 +148,7 @@ def test_another_wires_part_or_its_end_is_taken():
     X = rng.normal(size=(2, len(UNKNOWNS.names)))
     V, ends = UNKNOWNS.potential(X), 0
     for _ in range(100):
-        given = parts._exchanged(UNKNOWNS, wires_at(X, ends=[(1.0, 9.0), (9.0, 1.0)]), CUT, rng)
+        given = parts.exchanged(UNKNOWNS, wires_at(X, ends=[(1.0, 9.0), (9.0, 1.0)]), CUT, rng)
         first, second = (np.isclose(given.V, one) for one in V)
         assert np.all(first | second)
         assert np.count_nonzero(np.diff(second.astype(int))) <= 2
@@ -165,7 +165,7 @@ def test_a_part_moves_half_a_wavelength_into_a_deep_well(short_waves):
     x = np.linalg.lstsq(UNKNOWNS.to_potential, well + 0.1 * rng.normal(size=SITES), rcond=None)[0]
     V = UNKNOWNS.potential(x)
     for _ in range(50):
-        given = parts._moved(UNKNOWNS, wires_at([x]), CUT, rng)
+        given = parts.moved(UNKNOWNS, wires_at([x]), CUT, rng)
         moved = np.flatnonzero(~np.isclose(given.V, V))
         assert given.free[14:17].all()
         assert moved.size <= 0.5 * SITES + 1
@@ -180,7 +180,7 @@ def test_a_part_moves_half_a_wavelength_into_a_deep_well(short_waves):
 def test_what_is_not_free_is_kept_at_first_and_held_then(seed):
     rng = np.random.default_rng(seed)
     wires = wires_at(rng.normal(size=(3, len(UNKNOWNS.names))))
-    given = parts._redrawn(UNKNOWNS, wires, CUT, rng)
+    given = parts.redrawn(UNKNOWNS, wires, CUT, rng)
     kept, held = (parts._prior_given(UNKNOWNS, given, error) for error in (parts.KEPT, CUT.held))
     off = UNKNOWNS.potential(kept.draw(rng, 2)[0]) - given.V
     assert abs(off[~given.free]).max() < 5 * parts.KEPT * STD
@@ -190,10 +190,11 @@ def test_what_is_not_free_is_kept_at_first_and_held_then(seed):
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_starts_are_at_draws_with_what_is_not_free_as_it_was(seed, short_waves):
+@pytest.mark.parametrize("kind", [parts.exchanged, parts.moved, parts.redrawn])
+def test_starts_are_at_draws_with_what_is_not_free_as_it_was(seed, kind, short_waves):
     rng = np.random.default_rng(seed)
     X = rng.normal(size=(3, len(UNKNOWNS.names)))
-    start = with_another_part(UNKNOWNS, wires_at(X), CUT, rng)
+    start = with_another_part(kind, UNKNOWNS, wires_at(X), CUT, rng)
     V = UNKNOWNS.potential(X)
     there = np.concatenate([V, np.roll(V, 3, axis=1), np.roll(V, -3, axis=1)])
     off = abs(UNKNOWNS.potential(start.x) - there).min(axis=0)
@@ -207,7 +208,7 @@ def test_parameters_of_the_device_are_those_of_the_wire():
     rng = np.random.default_rng(0)
     x = rng.normal(size=len(unknowns.names))
     for _ in range(20):
-        start = with_another_part(unknowns, wires_at([x]), CUT, rng)
+        start = with_another_part(parts.redrawn, unknowns, wires_at([x]), CUT, rng)
         assert abs(start.x[-1] - x[-1]) < 5 * parts.KEPT
         assert abs(start.prior.mean[-1] - x[-1]) < abs(x[-1])
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -45,10 +45,6 @@ class Cut(NamedTuple):
     """… and what is free on either side of its ends."""
     held: float
     """All other V may change by this, in standard deviations of the prior."""
-    exchanged: float
-    """How often the part is another wire's, where there are several; …"""
-    moved: float
-    """… and how often it is the wire's own, moved by half a wavelength."""
 
 
 class Start(NamedTuple):
@@ -60,7 +56,7 @@ class Start(NamedTuple):
     """Of all unknowns, given those that are to change little."""
 
 
-class _Given(NamedTuple):
+class Given(NamedTuple):
     """V (site,) and the unknowns (unknown,) of a wire, and which sites are free."""
 
     V: FloatArray
@@ -68,32 +64,32 @@ class _Given(NamedTuple):
     free: NDArray[np.bool_]
 
 
+Kind = Callable[[Unknowns, Sequence[Wire], Cut, np.random.Generator], Given]
+"""What gives one of the wires another part."""
+
+
 def with_another_part(
-    unknowns: Unknowns, wires: Sequence[Wire], cut: Cut, rng: np.random.Generator
+    kind: Kind, unknowns: Unknowns, wires: Sequence[Wire], cut: Cut, rng: np.random.Generator
 ) -> Start:
     """Return a start at one of the wires with another part: drawn from the prior given the rest."""
-    kinds = [_exchanged, _moved, _redrawn] if len(wires) > 1 else [_moved, _redrawn]
-    odds = np.array([cut.exchanged, cut.moved, 1 - cut.exchanged - cut.moved])[-len(kinds) :]
-    given = kinds[rng.choice(len(kinds), p=odds / odds.sum())](unknowns, wires, cut, rng)
+    given = kind(unknowns, wires, cut, rng)
     x = _prior_given(unknowns, given, KEPT).draw_apart(rng, 1)[0]
     return Start(x, _prior_given(unknowns, given, cut.held))
 
 
-def _redrawn(
-    unknowns: Unknowns, wires: Sequence[Wire], cut: Cut, rng: np.random.Generator
-) -> _Given:
+def redrawn(unknowns: Unknowns, wires: Sequence[Wire], cut: Cut, rng: np.random.Generator) -> Given:
     """Free a part of one wire, where its data say that V may be wrong."""
     wire = _one_of(wires, rng)
     left, right = (max(end - 1, LEAST_EXCESS) for end in wire.ends)
     depth, half = DEPTH * rng.random(), _length(cut.redrawn, rng) / 2
     middle = depth if rng.random() < left / (left + right) else 1 - depth
     V = unknowns.potential(wire.x)
-    return _Given(V, wire.x, _between(V.size, middle - half, middle + half))
+    return Given(V, wire.x, _between(V.size, middle - half, middle + half))
 
 
-def _exchanged(
+def exchanged(
     unknowns: Unknowns, wires: Sequence[Wire], cut: Cut, rng: np.random.Generator
-) -> _Given:
+) -> Given:
     """Put a part of one wire into another, and free the sites about its ends."""
     if rng.random() < ENDS:
         wire, other = (min(wires, key=lambda one: one.ends[end]) for end in range(2))
@@ -107,10 +103,10 @@ def _exchanged(
     taken = _between(V.size, begin, end)
     V[taken] = unknowns.potential(other.x)[taken]
     free = [_between(V.size, at - seam, at + seam) for at in (begin, end) if 0 < at < 1]
-    return _Given(V, wire.x, np.any([np.zeros(V.size, dtype=bool), *free], axis=0))
+    return Given(V, wire.x, np.any([np.zeros(V.size, dtype=bool), *free], axis=0))
 
 
-def _moved(unknowns: Unknowns, wires: Sequence[Wire], cut: Cut, rng: np.random.Generator) -> _Given:
+def moved(unknowns: Unknowns, wires: Sequence[Wire], cut: Cut, rng: np.random.Generator) -> Given:
     """Move a part of one wire half a wavelength into a deep well at its end; free both ends."""
     wire, length, seam = _one_of(wires, rng), rng.uniform(*cut.taken), _length(cut.seam, rng)
     V, prior = unknowns.potential(wire.x), unknowns.prior
@@ -120,11 +116,11 @@ def _moved(unknowns: Unknowns, wires: Sequence[Wire], cut: Cut, rng: np.random.G
     well = (rng.choice(V.size, p=odds / odds.sum()) + 0.5) / V.size
     towards = rng.choice([-1, 1])
     begin, end = sorted((well, well - towards * length))
-    moved = _between(V.size, begin + towards * by / V.size, end + towards * by / V.size)
+    taken = _between(V.size, begin + towards * by / V.size, end + towards * by / V.size)
     from_there = np.clip(np.arange(V.size) - towards * by, 0, V.size - 1)
     reach = seam + by / V.size
     free = [_between(V.size, at - reach, at + reach) for at in (begin, end) if 0 < at < 1]
-    return _Given(np.where(moved, V[from_there], V), wire.x, np.any(free, axis=0))
+    return Given(np.where(taken, V[from_there], V), wire.x, np.any(free, axis=0))
 
 
 def _one_of(wires: Sequence[Wire], rng: np.random.Generator) -> Wire:
@@ -144,7 +140,7 @@ def _between(sites: int, begin: float, end: float) -> NDArray[np.bool_]:
     return (begin < at) & (at < end)
 
 
-def _prior_given(unknowns: Unknowns, given: _Given, held: float) -> Gaussian:
+def _prior_given(unknowns: Unknowns, given: Given, held: float) -> Gaussian:
     """Return the prior of all unknowns, given V of the sites that are not free, and parameters.
 
     All of these may change by `held` standard deviations of the prior.

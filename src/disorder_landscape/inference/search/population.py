@@ -24,7 +24,13 @@ from disorder_landscape.inference.problem.observation import (
     squared_misfits,
 )
 from disorder_landscape.inference.search.gauss_newton import ROUGHLY, Goal
-from disorder_landscape.inference.search.parts import Cut, with_another_part
+from disorder_landscape.inference.search.parts import (
+    Cut,
+    exchanged,
+    moved,
+    redrawn,
+    with_another_part,
+)
 from disorder_landscape.inference.search.small_steps import SmallSteps
 from disorder_landscape.inference.search.steps import Steps
 from disorder_landscape.inference.search.wires import Wire, best_of, objective_of, that_stay
@@ -37,37 +43,34 @@ FEW, MORE = (24, 9, 7), (24, 9, 11)
 and near it."""
 DRAWS = 12, 300
 """Draws of the prior that a population begins with, and small steps from each."""
-CHILDREN = (8, 100), (3, 300)
-"""So many wires of a generation get another part, and so many small steps follow; with the best of
-these steps go on … (Of 16 wires, after 40 steps, those are the best that have changed least. From
-there two wires took ten generations without finding what they had found soon with these.)"""
-FREE = 200
-"""… and at last with nothing held."""
+CHILDREN = (exchanged, 3), (moved, 5), (redrawn, 2)
+"""So many wires of a generation get another part of each kind. Steps go on with the best of each
+kind. (The best ones of all kinds would be those that have changed least: after 100 steps wires of
+which a part has moved to where it is right have up to nine times the χ² of before.)"""
+SMALL = 100, 300, 200
+"""Small steps of each of them; of the best ones then; and of these, when nothing is held any more.
+"""
 FAR = Cut(
     redrawn=(1 / 30, 1 / 2),
     taken=(1 / 15, 2 / 3),
     seam=(1 / 60, 1 / 10),
     held=0.5,
-    exchanged=0.3,
-    moved=0.4,
 )
 NEAR = Cut(
     redrawn=(1 / 30, 1 / 5),
     taken=(1 / 15, 2 / 3),
     seam=(1 / 100, 1 / 100),
     held=0.1,
-    exchanged=0.6,
-    moved=0.0,
 )
-NEAR_CHILDREN = 8, 3
-"""The same, where Gauss–Newton steps follow: few, and as many as lead to a minimum."""
+NEAR_CHILDREN, GO_ON = ((exchanged, 6), (redrawn, 2)), 3
+"""The same where few Gauss–Newton steps follow at once; with so many of the best they go on."""
 IS_NEAR, ALSO_NEAR = 1.5, 3.0
 """Gauss–Newton steps follow instead, when the mean square misfit of the best wire is less, in units
 of the noise's; and of which of the others."""
 APART_FAR, APART_NEAR = 0.25, 0.12
 """Of wires whose V differs by less, in standard deviations of the prior, root mean square over the
 sites, only the best one stays."""
-IDLE, STUCK = 2, (4, 10)
+IDLE, STUCK = 2, (6, 10)
 """Generations end where so many have found no better wire: if the best one explains the data; and
 if it does not, far and near. (Far, populations that arrived have found better ones in each.)"""
 LEAVE = 300
@@ -195,17 +198,21 @@ class Population:
         return that_stay(self.observation.unknowns, [*self.wires, *children], APART_FAR)
 
     def _small_steps(self, rng: np.random.Generator) -> list[FloatArray]:
-        """Return where small steps from wires with other parts lead, which explain data best."""
+        """Return where small steps from wires with other parts lead: the best of each kind."""
         unknowns = self.observation.unknowns
-        starts = [with_another_part(unknowns, self.wires, FAR, rng) for _ in range(CHILDREN[0][0])]
-        small = [SmallSteps(self.observation, start.prior, start.x) for start in starts]
-        for count, steps in CHILDREN:
-            small = small[:count]
-            heights = [self._after(one, steps, rng).objective for one in small]
-            small = [small[k] for k in np.argsort(heights)]
-        for one in small:
-            one.prior = unknowns.white_noise
-        return [self._after(one, FREE, rng).x for one in small]
+        first, held, free = SMALL
+        ends = list[FloatArray]()
+        for kind, count in CHILDREN:
+            tried = []
+            for _ in range(count):
+                start = with_another_part(kind, unknowns, self.wires, FAR, rng)
+                small = SmallSteps(self.observation, start.prior, start.x)
+                tried.append((self._after(small, first, rng).objective, small))
+            _, best = min(tried, key=lambda one: one[0])
+            self._after(best, held, rng)
+            best.prior = unknowns.white_noise
+            ends.append(self._after(best, free, rng).x)
+        return ends
 
     def _come_near(self, rng: np.random.Generator) -> list[Wire]:
         """Let Gauss–Newton steps follow."""
@@ -223,10 +230,13 @@ class Population:
     def _exchange_near(self, rng: np.random.Generator) -> list[Wire]:
         """Let Gauss–Newton steps follow other parts."""
         unknowns = self.observation.unknowns
-        count, go_on = NEAR_CHILDREN
-        starts = [with_another_part(unknowns, self.wires, NEAR, rng).x for _ in range(count)]
+        starts = [
+            with_another_part(kind, unknowns, self.wires, NEAR, rng).x
+            for kind, count in NEAR_CHILDREN
+            for _ in range(count)
+        ]
         tried = sorted([self._ended(x, "few") for x in starts], key=objective_of)
-        children = [self._ended(one.x, "better") for one in tried[:go_on]]
+        children = [self._ended(one.x, "better") for one in tried[:GO_ON]]
         return that_stay(self.observation.unknowns, [*self.wires, *children], APART_NEAR)
 
     def _after(self, small: SmallSteps, count: int, rng: np.random.Generator) -> Wire:
