@@ -4,9 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 
+import disorder_landscape as dl
 from disorder_landscape.inference.problem.measurement import Measurement
+from disorder_landscape.inference.problem.noise import noise_of_channels
+from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.problem.unknowns import Unknowns
+from disorder_landscape.model.disorder import smooth_noise
+from disorder_landscape.solver.quadrature import thermal_quadrature
 from linear_data import DATA, Linear
 
 SITES, AMPLITUDE, NOISE = 30, 0.8, 0.002
@@ -30,6 +35,17 @@ class Whole(Linear):
 
     def on_random_points(self, highest, counts, rng):
         return replace(self)
+
+
+def measured_landscape(mu, B):
+    """Return V of a wire, and what is measured of it, by quadrature: another route."""
+    rng = np.random.default_rng(1)
+    V = smooth_noise(rng, SITES, 3, "sum", AMPLITUDE)
+    V -= V.mean()
+    exact = thermal_quadrature([dl.Nanowire(potential=V)], mu, B, BIAS, 0.05).conductance[0]
+    G = exact + NOISE * rng.normal(size=exact.shape)
+    measurement = replace(NOTHING, G=G, mu=mu, B=B)
+    return V, Observation(measurement, UNKNOWNS, noise_of_channels(NOISE))
 
 
 def linear_landscape():

@@ -5,13 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import disorder_landscape as dl
 from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.landscape_hint import landscape_hint
 from disorder_landscape.inference.optimum import best, optimum_at
 from disorder_landscape.inference.problem.gaussian import Gaussian
-from disorder_landscape.inference.problem.noise import noise_of_channels
-from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.problem.unknowns import Unknowns
 from disorder_landscape.inference.search import parts, population
@@ -25,10 +22,15 @@ from disorder_landscape.inference.search.whole_landscape import (
 )
 from disorder_landscape.inference.search.wires import Wire, that_stay
 from disorder_landscape.inference.stages import SMALL_STEPS
-from disorder_landscape.model.disorder import smooth_noise
 from disorder_landscape.model.parameters import hopping
-from disorder_landscape.solver.quadrature import thermal_quadrature
-from landscape_data import AMPLITUDE, BIAS, NOISE, NOTHING, SITES, UNKNOWNS, linear_landscape
+from landscape_data import (
+    AMPLITUDE,
+    NOTHING,
+    SITES,
+    UNKNOWNS,
+    linear_landscape,
+    measured_landscape,
+)
 from linear_data import DATA, Ending, posterior
 
 CUT = Cut(
@@ -285,13 +287,7 @@ def test_where_no_wire_explains_the_data_another_population_begins(whole, monkey
 def test_v_of_every_site_is_found_at_low_mu(few_steps, monkeypatch):
     """… lower than where ways from high µ are known to find it; data are by quadrature."""
     monkeypatch.setattr(population, "DRAWS", (3, 100))
-    mu, fields = np.linspace(0, 0.8, 12), np.linspace(0, 0.8, 4)
-    rng, nothing = np.random.default_rng(1), replace(NOTHING, mu=mu, B=fields)
-    V = smooth_noise(rng, SITES, 3, "sum", AMPLITUDE)
-    V -= V.mean()
-    exact = thermal_quadrature([dl.Nanowire(potential=V)], mu, fields, BIAS, 0.05).conductance[0]
-    G = exact + NOISE * rng.normal(size=exact.shape)
-    observation = Observation(replace(nothing, G=G), UNKNOWNS, noise_of_channels(NOISE))
+    V, observation = measured_landscape(np.linspace(0, 0.8, 12), np.linspace(0, 0.8, 4))
     assert landscape_hint(observation)
     optima, _ = optima_of_whole_landscape(observation, Steps(), 0)
     assert optima.fits

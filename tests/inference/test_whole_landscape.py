@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import disorder_landscape as dl
 from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.invert import invert
 from disorder_landscape.inference.landscape_hint import landscape_hint
@@ -28,19 +27,16 @@ from disorder_landscape.inference.search.whole_landscape import (
     optima_of_whole_landscape,
 )
 from disorder_landscape.inference.verdict import CONVERGED, is_surely_right, verdict
-from disorder_landscape.model.disorder import smooth_noise
-from disorder_landscape.solver.quadrature import thermal_quadrature
 from landscape_data import (
-    AMPLITUDE,
     BIAS,
     MU,
     NOISE,
     NOTHING,
-    SITES,
     UNKNOWNS,
     B,
     Whole,
     linear_landscape,
+    measured_landscape,
 )
 from linear_data import DATA, Ending, posterior
 
@@ -52,12 +48,7 @@ def whole():
 
 def test_v_of_every_site_is_found_without_a_guess():
     """Of disorder that is not cut to components; data are by quadrature, another route."""
-    rng = np.random.default_rng(1)
-    V = smooth_noise(rng, SITES, 3, "sum", AMPLITUDE)
-    V -= V.mean()
-    exact = thermal_quadrature([dl.Nanowire(potential=V)], MU, B, BIAS, 0.05).conductance[0]
-    G = exact + NOISE * rng.normal(size=exact.shape)
-    observation = Observation(replace(NOTHING, G=G), UNKNOWNS, noise_of_channels(NOISE))
+    V, observation = measured_landscape(MU, B)
     found = invert(observation, None)
     assert verdict(observation, found) == CONVERGED
     std = UNKNOWNS.potential_std(found.answer.covariance)

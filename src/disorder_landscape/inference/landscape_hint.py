@@ -19,8 +19,10 @@ there."""
 
 def landscape_hint(observation: Observation) -> str:
     """Return a line about µ that do not go up high enough for V of every site, or nothing."""
+    if not observation.unknowns.is_whole_landscape:
+        return ""
     highest, needed = highest_and_needed_mu(observation)
-    if not observation.unknowns.is_whole_landscape or highest >= needed:
+    if highest >= needed:
         return ""
     sites = observation.unknowns.prior.sites
     return (

@@ -1,4 +1,4 @@
-"""Wires that have V from others, except for a part: drawn anew, or another wire's."""
+"""Wires that have V from others, except for a part: drawn anew, another wire's, or moved."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Cut(NamedTuple):
     redrawn: tuple[float, float]
     """What is drawn anew."""
     taken: tuple[float, float]
-    """What is another wire's, …"""
+    """What is another wire's, or moves, …"""
     seam: tuple[float, float]
     """… and what is free on either side of its ends."""
     held: float
@@ -102,8 +102,7 @@ def exchanged(
     V, seam = unknowns.potential(wire.x), _length(cut.seam, rng)
     taken = _between(V.size, begin, end)
     V[taken] = unknowns.potential(other.x)[taken]
-    free = [_between(V.size, at - seam, at + seam) for at in (begin, end) if 0 < at < 1]
-    return Given(V, wire.x, np.any([np.zeros(V.size, dtype=bool), *free], axis=0))
+    return Given(V, wire.x, _about(V.size, begin, seam) | _about(V.size, end, seam))
 
 
 def moved(unknowns: Unknowns, wires: Sequence[Wire], cut: Cut, rng: np.random.Generator) -> Given:
@@ -119,8 +118,8 @@ def moved(unknowns: Unknowns, wires: Sequence[Wire], cut: Cut, rng: np.random.Ge
     taken = _between(V.size, begin + towards * by / V.size, end + towards * by / V.size)
     from_there = np.clip(np.arange(V.size) - towards * by, 0, V.size - 1)
     reach = seam + by / V.size
-    free = [_between(V.size, at - reach, at + reach) for at in (begin, end) if 0 < at < 1]
-    return Given(np.where(taken, V[from_there], V), wire.x, np.any(free, axis=0))
+    free = _about(V.size, begin, reach) | _about(V.size, end, reach)
+    return Given(np.where(taken, V[from_there], V), wire.x, free)
 
 
 def _one_of(wires: Sequence[Wire], rng: np.random.Generator) -> Wire:
@@ -138,6 +137,11 @@ def _between(sites: int, begin: float, end: float) -> NDArray[np.bool_]:
     """Return which sites are between these shares of the wire, shape (site,)."""
     at = (np.arange(sites) + 0.5) / sites
     return (begin < at) & (at < end)
+
+
+def _about(sites: int, end: float, reach: float) -> NDArray[np.bool_]:
+    """Return which sites are about the end of a part, shape (site,): none if it is the wire's."""
+    return _between(sites, end - reach, end + reach) & (0 < end < 1)
 
 
 def _prior_given(unknowns: Unknowns, given: Given, held: float) -> Gaussian:

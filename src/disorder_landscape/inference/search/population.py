@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -173,12 +174,16 @@ class Population:
     ) -> list[Wire]:
         """Return the wires of a generation, from an interrupted run or made now."""
         rng = np.random.default_rng([self.seed, Stream.SEARCH, *self.name, number])
-        found = self.steps.cache(
-            self._name_of(number), lambda: {"x": [one.x.tolist() for one in make(rng)]}
-        )
+        made = list[Wire]()
+
+        def calculate() -> dict[str, Any]:
+            made.extend(make(rng))
+            return {"x": [one.x.tolist() for one in made]}
+
+        found = self.steps.cache(self._name_of(number), calculate)
         V = self.observation.unknowns.potential(np.array(found["x"]))
         self.spread = float(np.sqrt(V.var(axis=0).mean()))
-        return [Wire.at(data, np.array(x)) for x in found["x"]]
+        return made or [Wire.at(data, np.array(x)) for x in found["x"]]
 
     def _name_of(self, part: int | str) -> str:
         return ".".join(["population", *map(str, self.name), str(part)])
@@ -194,14 +199,14 @@ class Population:
 
     def _next_far(self, rng: np.random.Generator) -> list[Wire]:
         """Let small steps follow other parts."""
-        children = [Wire.at(self.few, x) for x in self._small_steps(rng)]
-        return that_stay(self.observation.unknowns, [*self.wires, *children], APART_FAR)
+        wires = [*self.wires, *self._small_steps(rng)]
+        return that_stay(self.observation.unknowns, wires, APART_FAR)
 
-    def _small_steps(self, rng: np.random.Generator) -> list[FloatArray]:
-        """Return where small steps from wires with other parts lead: the best of each kind."""
+    def _small_steps(self, rng: np.random.Generator) -> list[Wire]:
+        """Return the wires to which small steps lead from other parts: the best of each kind."""
         unknowns = self.observation.unknowns
         first, held, free = SMALL
-        ends = list[FloatArray]()
+        children = list[Wire]()
         for kind, count in CHILDREN:
             tried = []
             for _ in range(count):
@@ -211,8 +216,8 @@ class Population:
             _, best = min(tried, key=lambda one: one[0])
             self._after(best, held, rng)
             best.prior = unknowns.white_noise
-            ends.append(self._after(best, free, rng).x)
-        return ends
+            children.append(self._after(best, free, rng))
+        return children
 
     def _come_near(self, rng: np.random.Generator) -> list[Wire]:
         """Let Gauss–Newton steps follow."""
@@ -224,7 +229,7 @@ class Population:
 
     def _next_near(self, rng: np.random.Generator) -> list[Wire]:
         """Let small steps and then Gauss–Newton steps follow other parts."""
-        children = [self._ended(x, "better") for x in self._small_steps(rng)]
+        children = [self._ended(one.x, "better") for one in self._small_steps(rng)]
         return that_stay(self.observation.unknowns, [*self.wires, *children], APART_NEAR)
 
     def _exchange_near(self, rng: np.random.Generator) -> list[Wire]:

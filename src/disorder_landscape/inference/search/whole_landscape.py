@@ -77,11 +77,13 @@ def optima_of_whole_landscape(
     some = in_fields.on_few_points(*MORE)
     optima = Optima(in_fields, steps, STARTS)
     highest, needed = highest_and_needed_mu(observation)
-    others = list[Wire]()
-    for number in range(WAYS_DOWN if highest >= needed else POPULATIONS):
-        way: _Way | Population = _Way(in_fields, some, steps, seed, (number,))
-        if highest < needed:
-            way = Population(in_fields, steps, seed, (number,), others)
+    is_low, others = highest < needed, list[Wire]()
+    for number in range(POPULATIONS if is_low else WAYS_DOWN):
+        way: _Way | Population = (
+            Population(in_fields, steps, seed, (number,), others)
+            if is_low
+            else _Way(in_fields, some, steps, seed, (number,))
+        )
         x, goal = way.towards_optimum()
         if isinstance(way, Population):
             others = way.wires
