@@ -129,16 +129,17 @@ std::pair<Array, Array> conductance_gradient(Matrix V, Matrix parameters, Vector
 
 // Of the one wire that there is; slopes are as LeadSelfEnergy, (B, energy, 2) of them.
 nb::tuple thermal_conductance_gradient(Matrix V, Matrix parameters, Vector mu, Vector B, Vector bias, double kT, Vector energies,
-                                       LeadSlopesArray slopes, double spin_orbit_slope, double tolerance, double growth_limit) {
+                                       LeadSlopesArray slopes, double spin_orbit_slope, double tolerance, double growth_limit,
+                                       bool roughly) {
     require_shapes(V.shape(0) == 1 && energies.size() == 4 && slopes.shape(0) == B.size() && slopes.shape(1) == 4);
     std::vector<LeadSelfEnergy> of_leads = lead_self_energies_of(slopes.data(), slopes.size());
     std::vector<size_t> sets{mu.size(), B.size()};
     Array error = new_array(sets), solved = new_array(sets), gradient_error = new_array({mu.size(), B.size(), 2});
     Array by_V = new_array({mu.size(), B.size(), bias.size(), 4, V.shape(1)});
-    Array others = new_array({mu.size(), B.size(), bias.size(), 4, CHANGES});
+    Array others = new_array({mu.size(), B.size(), bias.size(), 4, size_t(roughly ? 0 : CHANGES)});
     Array G = on_grid(V, parameters, mu, B, bias, 0.0, {mu.size(), B.size(), bias.size(), 4},
                       [&](const Grid& grid, double* out, Stop& stop) {
-                          ThermalGradientGrid at{grid, kT, energies.data(), of_leads.data(), spin_orbit_slope};
+                          ThermalGradientGrid at{grid, kT, energies.data(), of_leads.data(), spin_orbit_slope, roughly};
                           thermal_gradient(at, tolerance, growth_limit, out, error.data(), solved.data(),
                                            {by_V.data(), others.data()}, gradient_error.data(), stop);
                       });
@@ -265,7 +266,7 @@ NB_MODULE(CORE_MODULE, m) {
           nb::arg("growth_limit"));
     m.def("thermal_conductance_gradient", &thermal_conductance_gradient, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"),
           nb::arg("B"), nb::arg("bias"), nb::arg("kT"), nb::arg("energies"), nb::arg("slopes"), nb::arg("spin_orbit_slope"),
-          nb::arg("tolerance"), nb::arg("growth_limit"));
+          nb::arg("tolerance"), nb::arg("growth_limit"), nb::arg("roughly"));
     m.def("isolated_ends", &ends_of_isolated, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"),
           nb::arg("B"), nb::arg("x"), nb::arg("y"), nb::arg("theta"));
     m.def("levels", &levels_of, nb::arg("V"), nb::arg("parameters"), nb::arg("mu"), nb::arg("B"), nb::arg("count"),

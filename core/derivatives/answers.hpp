@@ -110,8 +110,8 @@ struct SiteFrame {
     double cosine, sine, n_cosine, n_sine, parity;
 };
 
-// Add a site's part to the sums, and return its Tr[τz Q_ab], Q_ab the sum of u yᵀ over RANK vectors.
-template <int RANK, class R>
+// Return Tr[τz Q_ab] of a site, Q_ab the sum of u yᵀ over RANK vectors, and add its part to the sums, if ALL are asked for.
+template <int RANK, bool ALL, class R>
 CORE_INLINE Complex<R> add_site(const SiteFrame& at, const Complex<R> (&us)[RANK][4], const Complex<R> (&ys)[RANK][4], SiteSums<R>& sums) {
     using C = Complex<R>;
     C own[4], flip, pair;
@@ -130,7 +130,9 @@ CORE_INLINE Complex<R> add_site(const SiteFrame& at, const Complex<R> (&us)[RANK
             pair = pair + u[0] * y[2] + u[2] * y[0] + u[1] * y[3] + u[3] * y[1];
         }
     }
-    C electrons = own[0] + own[1], holes = own[2] + own[3], along_z = (own[0] - own[1]) + (own[2] - own[3]);
+    C electrons = own[0] + own[1], holes = own[2] + own[3];
+    if constexpr (!ALL) return electrons - holes;
+    C along_z = (own[0] - own[1]) + (own[2] - own[3]);
     sums.one = sums.one + electrons + holes;
     sums.tau_x = sums.tau_x + pair * R(at.parity);
     sums.along = sums.along + flip * R(at.cosine) + along_z * R(at.sine);

@@ -24,10 +24,16 @@
 namespace core {
 
 constexpr double HEIGHT = std::numbers::pi / 2;  // of the line, in kT: half way to the poles of the kernel
-// In kT, along the line and how far it goes beyond the plan's window.  Of 320 random derivatives half are within 2e-5 of
-// the largest; with steps of 0.75, 0.65 and 0.55 they are within 4e-5, 7e-6 and 3e-6.  Where the line ends with the window,
-// 64 to 74 of a hundred are within 1e-4, with this end 73 to 88, with 4 kT more 79 to 91.
-constexpr double STEP = 0.7, FURTHER = 1.9;
+// Of the line, in kT.
+struct Line {
+    double step, further;  // and how far it goes beyond the plan's window
+};
+// Of 320 random derivatives half are within 2e-5 of the largest; with steps of 0.75, 0.65 and 0.55 they are within 4e-5, 7e-6 and
+// 3e-6.  Where the line ends with the window, 64 to 74 of a hundred are within 1e-4, with this end 73 to 88, with 4 kT more 79 to 91.
+constexpr Line EXACT{0.7, 1.9};
+// With the model's poles, of 108 sets of four wires half are within 0.3 % of the largest derivative by V, and 95 % within 2 %.  With
+// steps of 1.0 and 1.2 these are 0.2 and 1.5 %, and 0.5 and 3 %; where the line ends 5 kT before the window, 0.4 and 4 %.
+constexpr Line ROUGH{1.1, -4.0};
 constexpr double BEYOND = 3.0;  // poles up to so many steps above the line are seen by it
 // Of a path to the gap: to what power of 1/e the line is right, and points where it comes down, next to the gap and above it.  Of 200
 // derivatives of hot wires each by V, μ, γ and Δ₀ 97, 93, 94 and 90 % are within 1e-4 of the largest.  With a power of 12 it is 94,
@@ -46,12 +52,12 @@ public:
     std::vector<Point> above_axis, next_to_gap, above_gap;  // Re z ≥ 0; −z̄ counts, too
 
     // Of a window, in meV, that ends below the gap; so does the line.
-    Path(double window, double kT, double delta0) : Path(kT) {
-        end = std::min(window + FURTHER * kT, BELOW_GAP * delta0);
+    Path(double window, double kT, double delta0, const Line& line = EXACT) : Path(kT, line.step) {
+        end = std::min(window + line.further * kT, BELOW_GAP * delta0);
         for (int j = 0; j < int(std::ceil(end / step)); ++j) above_axis.push_back({{(j + 0.5) * step, height}, step});
     }
     // Of one that does not; levels are told apart up to the given τ.
-    Path(double window, double kT, double delta0, double tau) : Path(kT) {
+    Path(double window, double kT, double delta0, double tau) : Path(kT, EXACT.step) {
         end = delta0, edge = delta0 * std::tanh(tau);
         const GaussLegendre line(2 * int(std::ceil(POWER / (4 * std::asinh(height / edge))))), down(COMING_DOWN), next(NEXT_TO_GAP);
         for (size_t k = line.node.size() / 2; k < line.node.size(); ++k)
@@ -66,7 +72,7 @@ public:
             double at = last * (1 + next.node[k]) / 2;  // exp(−2τ)
             next_to_gap.push_back({delta0 * (1 - at) / (1 + at), delta0 * last * next.weight[k] / ((1 + at) * (1 + at))});
         }
-        const double farthest = std::acosh(std::max((window + FURTHER * kT) / delta0, LEAST_ABOVE));
+        const double farthest = std::acosh(std::max((window + EXACT.further * kT) / delta0, LEAST_ABOVE));
         const GaussLegendre over(int(std::ceil(ABOVE_GAP * farthest)));
         for (size_t k = 0; k < over.node.size(); ++k) {
             double at = farthest * (1 + over.node[k]) / 2;
@@ -89,7 +95,7 @@ public:
 private:
     double edge = INFINITY;
 
-    explicit Path(double kT) : height(HEIGHT * kT), step(STEP * kT) {}
+    Path(double kT, double step) : height(HEIGHT * kT), step(step * kT) {}
 };
 
 }  // namespace core

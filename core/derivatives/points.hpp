@@ -33,8 +33,8 @@ inline void find_conjugates(const GradientField& field, double mu, ContourPoint*
             for (int j = 0; j < 8; ++j) points[l].conjugate(i, j) = std::conj(of_lane(G(i, j), l));
 }
 
-// Up to REGISTER points of one set: what they add to the derivatives of COUNT probabilities.
-template <int COUNT>
+// Up to REGISTER points of one set: what they add to the derivatives of COUNT probabilities, by V or by ALL that changes them.
+template <int COUNT, bool ALL>
 class PointsOfSet {
     using R = PointLanes::R;
     using C = PointLanes::C;
@@ -110,12 +110,12 @@ public:
                 const auto& to = wave[TO[k]];
                 for (int q = 0; q < 2; ++q)
                     for (int i = 0; i < 4; ++i) u[q][i] = to[0][i] * m[0][q] + to[1][i] * m[1][q];
-                tau_z[k] = add_site<2, R>(field.frames[n], u, wave[FROM[k]], sums[k]);
+                tau_z[k] = add_site<2, ALL, R>(field.frames[n], u, wave[FROM[k]], sums[k]);
             }
             add_by_V(n, tau_z);
         };
         for_all_columns<R>(view(field.wire), at.terms, at.leads.sigma, room.sites, meet, use);
-        add_changes();
+        if constexpr (ALL) add_changes();
     }
 
 private:
@@ -139,11 +139,11 @@ private:
                     x[2 + c][0][i] = Q(i, 2 * c) * f[2 + c][0] + Q(i, 2 * c + 1) * f[2 + c][1];
                 }
 #pragma GCC unroll 10
-            for (int k = 0; k < COUNT; ++k) tau_z[k] = add_site<1, R>(field.frames[n], x[TO[k]], x[FROM[k]], sums[k]);
+            for (int k = 0; k < COUNT; ++k) tau_z[k] = add_site<1, ALL, R>(field.frames[n], x[TO[k]], x[FROM[k]], sums[k]);
             add_by_V(n, tau_z);
         };
         for_all_columns<R>(view(field.wire), at.terms, at.leads.sigma, room.sites, meet, use);
-        add_changes();
+        if constexpr (ALL) add_changes();
     }
 
     CORE_INLINE void add_by_V(int n, const C (&tau_z)[COUNT]) const {

@@ -14,6 +14,7 @@ struct ThermalGradientGrid {
     const double* energies;  // (CUBIC,)
     const LeadSelfEnergy* slopes;  // of Σ/t' in the rotated frame by the leads' V_Z and by α
     double s_slope;  // d(α/2a)/dα
+    bool roughly = false;  // by V alone, and where the window ends below the gap within a few percent only
 };
 
 namespace detail {

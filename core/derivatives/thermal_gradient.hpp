@@ -21,7 +21,8 @@
 
 namespace core {
 
-// Where the derivatives go: (set, bias, conductance, site), and (set, bias, conductance, CHANGES); a set is (mu, B).
+// Where the derivatives go: (set, bias, conductance, site), and (set, bias, conductance, CHANGES); a set is (mu, B).  Roughly, only
+// the first are found.
 struct ThermalGradientArrays {
     double *by_V, *others;
 };
@@ -30,13 +31,15 @@ struct ThermalGradientArrays {
 struct GradientRules {
     ShiftedAverages averages;
     Path path;
+    bool roughly;
 
-    GradientRules(const Grid& grid, double kT, int nodes, const Wire& wire)
-        : averages(PlanKey(grid, kT, nodes, wire).plan(grid, kT)), path(path_of(averages.plan, window_of(grid.omega, grid.omega_count, kT), wire)) {}
+    GradientRules(const ThermalGradientGrid& at, int nodes, const Wire& wire)
+        : averages(PlanKey(at.grid, at.kT, nodes, wire).plan(at.grid, at.kT)),
+          path(path_of(averages.plan, window_of(at.grid.omega, at.grid.omega_count, at.kT), wire, at.roughly)), roughly(at.roughly) {}
 
 private:
-    static Path path_of(const EnergyPlan& plan, double window, const Wire& wire) {
-        if (!plan.reaches_gap()) return Path(window, plan.kT, wire.delta0);
+    static Path path_of(const EnergyPlan& plan, double window, const Wire& wire, bool roughly) {
+        if (!plan.reaches_gap()) return Path(window, plan.kT, wire.delta0, roughly ? ROUGH : EXACT);
         return Path(window, plan.kT, wire.delta0, std::max(resolved_up_to(wire, plan.nodes), LEAST_RESOLVED) - BEFORE);
     }
 };
@@ -67,7 +70,7 @@ struct GradientErrors {
     double at_gap = 0.0;  // of those by Δ₀ and V_Z: by how much the levels of one spin next to the gap may differ from the mean
 };
 
-// Fill out the derivatives of one set.
+// Fill out the derivatives of one set; roughly, `others` is left as it is.
 inline GradientErrors gradient_of_set(const detail::GradientField& field, const GradientRules& rules, const RationalConductances& model, double mu,
                               std::vector<ContourPoint> points, double* by_V, double* others) {
     using namespace detail;
@@ -83,11 +86,13 @@ inline GradientErrors gradient_of_set(const detail::GradientField& field, const 
     auto add = [&](size_t first, int count) {
         const ContourPoint* some = &points[first];
         bool absorbed = field.of.dissipation > 0 || some->z.real() > field.of.delta0;  // by levels or the parent
-        if (absorbed) PointsOfSet<WITH_RETURNS>(field, rules.averages, mu, some, count, room).add();
-        else PointsOfSet<PROBABILITIES>(field, rules.averages, mu, some, count, room).add();
+        if (absorbed) PointsOfSet<WITH_RETURNS, true>(field, rules.averages, mu, some, count, room).add();
+        else if (rules.roughly) PointsOfSet<PROBABILITIES, false>(field, rules.averages, mu, some, count, room).add();
+        else PointsOfSet<PROBABILITIES, true>(field, rules.averages, mu, some, count, room).add();
     };
-    in_lanes(0, std::count_if(points.begin(), points.end(), is_at_pole),
-             [&](size_t first, int count) { find_exact_poles(field, path, mu, &points[first], count, room); });
+    if (!rules.roughly || path.reaches_gap())
+        in_lanes(0, std::count_if(points.begin(), points.end(), is_at_pole),
+                 [&](size_t first, int count) { find_exact_poles(field, path, mu, &points[first], count, room); });
     leave_out_twins(points);
     std::erase_if(points, [](const ContourPoint& one) { return one.weight == 0.0; });
     const size_t poles = std::count_if(points.begin(), points.end(), is_at_pole);
@@ -104,6 +109,7 @@ inline GradientErrors gradient_of_set(const detail::GradientField& field, const 
     };
     for (size_t v = 0; v < values; ++v)
         for (size_t n = 0; n < sites; ++n) by_V[v * sites + n] = 2 / field.hop * total(room.by_V[n * values + v]);
+    if (rules.roughly) return {};
     const auto by_bias = rules.averages.derivatives(model, BY_BIAS), by_kT = rules.averages.derivatives(model, BY_KT);
     std::vector<double> of_all = by_bias, missed(values, 0.0);
     if (plan.reaches_gap()) {
@@ -134,7 +140,7 @@ inline GradientErrors gradient_of_set(const detail::GradientField& field, const 
 constexpr double TOLERANCE_TO_GAP = 0.4;
 
 // Fill G and error as thermal_conductance does, the derivatives, and their errors, shape (mu, B, 2) as GradientErrors: infinite,
-// and the derivatives NaN, where a set has no model.
+// and the derivatives NaN, where a set has no model.  Roughly, errors are not estimated, and zero.
 inline void thermal_gradient(const ThermalGradientGrid& at, double tolerance, double growth_limit, double* G, double* error,
                              double* energies, ThermalGradientArrays out, double* gradient_error, Stop& stop) {
     const Grid& grid = at.grid;
@@ -155,12 +161,13 @@ inline void thermal_gradient(const ThermalGradientGrid& at, double tolerance, do
     }
     std::map<int, GradientRules> rules;
     for (const SetModel& model : models)
-        if (model.nodes > 0 && !rules.contains(model.nodes)) rules.try_emplace(model.nodes, grid, at.kT, model.nodes, wire);
+        if (model.nodes > 0 && !rules.contains(model.nodes)) rules.try_emplace(model.nodes, at, model.nodes, wire);
     size_t values = size_t(grid.omega_count) * 4;
     in_parallel(grid.mu_count * grid.B_count, stop, [&](int set) {
-        double *by_V = out.by_V + set * values * wire.sites, *others = out.others + set * values * CHANGES;
+        const size_t changes = at.roughly ? 0 : CHANGES;
+        double *by_V = out.by_V + set * values * wire.sites, *others = out.others + set * values * changes;
         if (models[set].nodes == 0) {
-            std::fill_n(by_V, values * wire.sites, NAN), std::fill_n(others, values * CHANGES, NAN);
+            std::fill_n(by_V, values * wire.sites, NAN), std::fill_n(others, values * changes, NAN);
             gradient_error[2 * set] = gradient_error[2 * set + 1] = INFINITY;
             return;
         }

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from disorder_landscape import ArgumentError
 from disorder_landscape.inference.optimum import optimum_at
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.search.gauss_newton import (
@@ -74,13 +75,29 @@ def test_steps_that_creep_end_where_only_a_place_is_asked_for():
     assert steps["few"] == rough[:FEW_STEPS]
 
 
+def test_steps_to_where_nothing_can_be_simulated_are_damped():
+    class Walled(Linear):
+        walls = 0
+
+        def simulate(self, X):
+            if abs(X).max() > 3:
+                Walled.walls += 1
+                raise ArgumentError("potential", "stay within 3", "it does not")
+            return np.sinh(X @ self.slope)
+
+    walled = Walled(np.full(40, 5.0), np.eye(SIZE, 40), variance=np.full(40, 1e-4))
+    found = gauss_newton(walled, np.zeros(SIZE))
+    assert Walled.walls > 0
+    np.testing.assert_allclose(found.mean, np.arcsinh(5.0), atol=0.01)
+
+
 def test_few_steps_ask_for_no_slopes_that_they_do_not_use():
     class Bent(Linear):
         slopes_asked_for = 0
 
-        def exact_slopes(self, x):
+        def closed_form_slopes(self, x, roughly=False):
             Bent.slopes_asked_for += 1
-            return super().exact_slopes(x)
+            return super().closed_form_slopes(x, roughly)
 
         def simulate(self, X):
             return np.arctan(X @ self.slope)

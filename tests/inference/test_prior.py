@@ -241,18 +241,33 @@ def test_slopes_that_are_not_trusted_are_differences(monkeypatch):
     x = 0.3 * np.ones(len(o.unknowns.names))
     exact, slopes = linearise(o, x)
     monkeypatch.setattr(observation_module, "TRUSTED", 1e-12)
-    assert (o.exact_slopes(x).doubt > 1).all()
+    assert (o.closed_form_slopes(x).doubt > 1).all()
     data, differences = linearise(o, x)
     assert_allclose(data, exact, atol=2e-4)
     assert 0 < abs(differences - slopes).max() < 0.05 * abs(slopes).max() + 0.05
 
 
+def test_rough_slopes_are_rough_where_v_alone_is_unknown():
+    def slopes(prior, roughly):
+        o = observation(prior)
+        return o.closed_form_slopes(0.3 * np.ones(len(o.unknowns.names)), roughly)
+
+    exact, rough = (slopes(Prior(3, SITES), roughly) for roughly in (False, True))
+    assert_allclose(rough.data, exact.data, atol=2e-4)
+    off = abs(rough.slope - exact.slope).max() / abs(exact.slope).max()
+    assert 1e-6 < off < 0.05
+    assert (rough.doubt == 0).all()
+    for roughly in (False, True):
+        found = slopes(Prior(3, SITES, alpha=(7.0, 9.0)), roughly)
+        assert (found.doubt > 0).all()
+
+
 def test_slopes_are_not_claimed_where_there_are_none_in_closed_form():
     o = observation(replace(EVERYTHING, temperature=0.0))
     x = np.zeros(len(o.unknowns.names))
-    assert o.exact_slopes(x) is None
+    assert o.closed_form_slopes(x) is None
     hot = observation(replace(EVERYTHING, temperature=0.3))
-    assert hot.exact_slopes(x) is not None
+    assert hot.closed_form_slopes(x) is not None
 
 
 def test_the_whole_landscape_is_the_disorder_before_it_is_cut():

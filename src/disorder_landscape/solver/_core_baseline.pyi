@@ -71,6 +71,7 @@ def thermal_conductance_gradient(
     spin_orbit_slope: float,
     tolerance: float,
     growth_limit: float,
+    roughly: bool,
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]: ...
 def isolated_ends(
     V: FloatArray,

@@ -216,6 +216,12 @@ def has_closed_form(wire: Nanowire, bias: FloatArray, temperature: float) -> boo
     return reaches and 0 < temperature <= HOTTEST
 
 
+def energies_of_leads(bias: FloatArray, temperature: float) -> FloatArray:
+    """Return the four energies at which the core is told of the leads, in meV."""
+    window = routes.thermal_window(bias, temperature)
+    return np.asarray(window * np.sin(np.pi * (np.arange(4) + 0.5) / 8))
+
+
 _Point = tuple[Nanowire, FloatArray, FloatArray, FloatArray, float]
 
 
@@ -252,7 +258,7 @@ def _of_the_core(
 
     Those of THROUGH_GAP, as a share of the largest by an energy; zero where there is no model.
     """
-    energies = routes.thermal_window(bias, temperature) * np.sin(np.pi * (np.arange(4) + 0.5) / 8)
+    energies = energies_of_leads(bias, temperature)
     slopes = np.ascontiguousarray(rotated_lead_slopes(wire, B, energies))
     raw = compiled_gradients.thermal_gradient(wire, mu, B, bias, temperature, energies, slopes)
     of = dict(zip(CORE_ORDER, np.moveaxis(raw.others, -1, 0), strict=True))

@@ -12,10 +12,11 @@ guess, steps stopped 10 to 100 µeV off. With the exact ones they find the optim
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
+from disorder_landscape.arguments import ArgumentError
 from disorder_landscape.inference.optimum import Optimum, chi_square_excess, is_noise
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.observation import Observation, objective, overall_misfit
@@ -26,12 +27,22 @@ DIFFERENCE = 1e-4
 """Step of the differences in meV per site, root mean square, or what changes the conductances as
 much: a fortieth of kT at 50 mK. (Five times as much changes error bars by a few percent, and so,
 now and then, does a fifth of it.)"""
-DOUBT = 1.0, 30.0
-"""Where the closed form's derivatives are trusted less than this, differences replace them: where
-steps go to an optimum itself, and where they go near one. (The estimated errors are large: of
-nineteen sets of wires of 300 sites that had to be within 0.003 and were not, derivatives were
-off by 0.0005 on average and 0.003 at most. Differences in these sets take three quarters of the
-time.)"""
+
+
+class Accuracy(NamedTuple):
+    """How exact derivatives are."""
+
+    doubt: float
+    """Where those of the closed form are trusted less than this, differences replace them."""
+    roughly: bool = False
+    """Whether rough ones do."""
+
+
+AT_OPTIMUM, NEAR_ONE, IN_SMALL_STEPS = Accuracy(1.0), Accuracy(30.0), Accuracy(30.0, roughly=True)
+"""Where steps go to an optimum itself, where they go near one, and where they are small. (The
+estimated errors are large: of nineteen sets of wires of 300 sites that had to be within 0.003 and
+were not, derivatives were off by 0.0005 on average and 0.003 at most. Differences in these sets
+take three quarters of the time.)"""
 STEPS = 30
 """At most, …"""
 FEW_STEPS = 3
@@ -83,7 +94,8 @@ def gauss_newton(
     precision = np.linalg.inv(prior.covariance)
     x, (factor, first, largest) = start, DAMPING
     roughly, most = goal != "optimum", FEW_STEPS if goal == "few" else STEPS
-    y, slope = linearise(observation, start, roughly)
+    accuracy = NEAR_ONE if roughly else AT_OPTIMUM
+    y, slope = linearise(observation, start, accuracy)
     best, damping = float(objective(observation, x, y)), 0.0
     heights = [best]
     for number in range(most):
@@ -94,16 +106,14 @@ def gauss_newton(
         while True:
             damped = information + damping * np.diag(np.diag(information))
             tried = x + np.linalg.solve(damped, downhill)
-            y_tried = observation.simulate(tried[None])[0]
-            found = float(objective(observation, tried, y_tried))
+            y_tried, found = _simulated(observation, tried)
             if found < best or damping > largest:
                 break
             damping = max(first, factor**2 * damping)
         step = tried - x
         while found < best:  # a valley that bends: a line search costs next to nothing
             further = tried + step
-            y_further = observation.simulate(further[None])[0]
-            found_further = float(objective(observation, further, y_further))
+            y_further, found_further = _simulated(observation, further)
             if found_further >= found:
                 break
             tried, y_tried, found, step = further, y_further, found_further, 2 * step
@@ -120,9 +130,18 @@ def gauss_newton(
                 return one.answer
         if goal == "few" and number + 1 == most:
             break  # its width is not asked for
-        slope = linearise(observation, x, roughly)[1]
+        slope = linearise(observation, x, accuracy)[1]
         damping = 0.0 if damping <= first else damping / factor
     return laplace(observation, x, slope)
+
+
+def _simulated(observation: Observation, x: FloatArray) -> tuple[FloatArray, float]:
+    """Return data of x (unknown,), and −2 log(posterior): infinite where V is too large for any."""
+    try:
+        y = observation.simulate(x[None])[0]
+    except ArgumentError:
+        return observation.data, np.inf
+    return y, float(objective(observation, x, y))
 
 
 def _creep(observation: Observation, heights: Sequence[float], y: FloatArray) -> bool:
@@ -150,17 +169,14 @@ def precision_of(observation: Observation, slope: FloatArray) -> FloatArray:
 
 
 def linearise(
-    observation: Observation, x: FloatArray, roughly: bool = False
+    observation: Observation, x: FloatArray, accuracy: Accuracy = AT_OPTIMUM
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the data of x (unknown,), shape (datum,), and their slopes (unknown, datum).
-
-    Roughly, or as steps to an optimum itself need them: DOUBT.
-    """
-    exact = observation.exact_slopes(x)
-    if exact is None:
+    """Return the data of x (unknown,), shape (datum,), and their slopes (unknown, datum)."""
+    found = observation.closed_form_slopes(x, accuracy.roughly)
+    if found is None:
         return _differences(observation, x)
-    y, slope = exact.data, exact.slope
-    for mu, B in np.argwhere(exact.doubt > DOUBT[roughly]):
+    y, slope = found.data, found.slope
+    for mu, B in np.argwhere(found.doubt > accuracy.doubt):
         of_set, at = observation.of_set(mu, B)
         if at.size:
             y[at], slope[:, at] = _differences(of_set, x)

@@ -14,7 +14,7 @@ import numpy as np
 
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.observation import Observation
-from disorder_landscape.inference.search.gauss_newton import linearise
+from disorder_landscape.inference.search.gauss_newton import IN_SMALL_STEPS, linearise
 from disorder_landscape.model.parameters import FloatArray
 
 POINTS = 3, 3, 5
@@ -67,7 +67,9 @@ class SmallSteps:
                 self.weight = max(1.0, self.weight / factor)
             prior_says = self.weight * precision
             information = self.information + prior_says
-            self.x = self.x + STEP * np.linalg.solve(information, data_say - prior_says @ off)
+            step = STEP * np.linalg.solve(information, data_say - prior_says @ off)
+            longest = np.sqrt(off.size)  # as draws of the prior are
+            self.x = self.x + step * (longest / max(np.linalg.norm(step), longest))
 
     def _information_and_slope(self, rng: np.random.Generator) -> FloatArray:
         """Note the information of a draw of data, and return half the slope of −χ² (unknown,).
@@ -75,7 +77,7 @@ class SmallSteps:
         Both as if all data were drawn.
         """
         part = self.observation.on_random_points(1.0, POINTS, rng)
-        y, slope = linearise(part, self.x, roughly=True)
+        y, slope = linearise(part, self.x, IN_SMALL_STEPS)
         misfit, many = part.data - y, self.observation.data.size / part.data.size
         tempered = many / max(1.0, float((misfit**2 / part.variance).mean()))
         weighted = tempered * slope / part.variance
