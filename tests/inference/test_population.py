@@ -8,10 +8,12 @@ import pytest
 from disorder_landscape.inference.checkpoint import Checkpoint
 from disorder_landscape.inference.landscape_hint import landscape_hint
 from disorder_landscape.inference.optimum import best, optimum_at
+from disorder_landscape.inference.outcome import Outcome
 from disorder_landscape.inference.problem.gaussian import Gaussian
 from disorder_landscape.inference.problem.prior import Prior
 from disorder_landscape.inference.problem.unknowns import Unknowns
-from disorder_landscape.inference.search import parts, population
+from disorder_landscape.inference.search import generations, parts
+from disorder_landscape.inference.search.generations import Generations
 from disorder_landscape.inference.search.parts import Cut, with_another_part
 from disorder_landscape.inference.search.population import Population
 from disorder_landscape.inference.search.small_steps import BEFORE, WEIGHT, SmallSteps
@@ -22,6 +24,7 @@ from disorder_landscape.inference.search.whole_landscape import (
 )
 from disorder_landscape.inference.search.wires import Wire, that_stay
 from disorder_landscape.inference.stages import SMALL_STEPS
+from disorder_landscape.inference.verdict import NOT_CONVERGED, NOT_DESCRIBED, verdict
 from disorder_landscape.model.parameters import hopping
 from landscape_data import (
     AMPLITUDE,
@@ -50,13 +53,13 @@ def whole():
 
 @pytest.fixture
 def few_steps(monkeypatch):
-    monkeypatch.setattr(population, "DRAWS", (3, 20))
+    monkeypatch.setattr(generations, "DRAWS", (3, 20))
     kinds = [(parts.exchanged, 2), (parts.moved, 1), (parts.redrawn, 1)]
-    monkeypatch.setattr(population, "CHILDREN", kinds)
-    monkeypatch.setattr(population, "NEAR_CHILDREN", kinds)
-    monkeypatch.setattr(population, "GO_ON", 1)
-    monkeypatch.setattr(population, "SMALL", (10, 10, 10))
-    monkeypatch.setattr(population, "LEAVE", 20)
+    monkeypatch.setattr(generations, "CHILDREN", kinds)
+    monkeypatch.setattr(generations, "NEAR_CHILDREN", kinds)
+    monkeypatch.setattr(generations, "GO_ON", 1)
+    monkeypatch.setattr(generations, "SMALL", (10, 10, 10))
+    monkeypatch.setattr(generations, "LEAVE", 20)
 
 
 @pytest.fixture
@@ -106,6 +109,16 @@ def test_the_prior_weighs_more_where_v_is_larger_than_it_is_expected(whole):
     assert 1.0 < max(weights) <= largest
     assert weights[-1] == 1.0
     assert small.draws == BEFORE + 400
+
+
+def test_no_step_is_longer_than_a_draw_of_the_prior(whole, monkeypatch):
+    """… whatever a slope that is wrong says."""
+    small = small_steps_at(whole, np.zeros(len(UNKNOWNS.names)))
+    small.draws, small.information = BEFORE, np.zeros((len(UNKNOWNS.names),) * 2)
+    far = np.full(len(UNKNOWNS.names), 1e9)
+    monkeypatch.setattr(SmallSteps, "_information_and_slope", lambda self, rng: far)
+    small.take(1, np.random.default_rng(0))
+    assert np.linalg.norm(small.x) == pytest.approx(np.sqrt(len(UNKNOWNS.names)))
 
 
 def test_what_a_draw_of_data_says_counts_for_all_of_them(whole):
@@ -267,11 +280,16 @@ def test_an_interrupted_population_goes_on_alike(whole, few_steps):
     np.testing.assert_array_equal(found, expected)
 
 
-def test_where_no_wire_explains_the_data_another_population_begins(whole, monkeypatch):
-    """… which leads to the place of an optimum, as the first one does."""
+@pytest.mark.parametrize("joins", [False, True])
+def test_where_no_wire_explains_the_data_another_population_begins(whole, monkeypatch, joins):
+    """… which leads to the place of an optimum, as the first one does.
+
+    That says that the model does not describe the data, unless wires of the first one have joined.
+    """
     begun = []
 
     def fail(self):
+        self.joined = joins and bool(begun)
         begun.append(self.name)
         return np.full(len(UNKNOWNS.names), 30.0 * len(begun)), "place"
 
@@ -282,11 +300,13 @@ def test_where_no_wire_explains_the_data_another_population_begins(whole, monkey
     assert begun == [(number,) for number in range(POPULATIONS)]
     assert populations == POPULATIONS
     assert not optima.fits
+    outcome = Outcome(tuple(optima.found), attempts=populations)
+    assert verdict(whole, outcome) == (NOT_CONVERGED if joins else NOT_DESCRIBED)
 
 
 def test_v_of_every_site_is_found_at_low_mu(few_steps, monkeypatch):
     """… lower than where ways from high µ are known to find it; data are by quadrature."""
-    monkeypatch.setattr(population, "DRAWS", (3, 100))
+    monkeypatch.setattr(generations, "DRAWS", (3, 100))
     V, observation = measured_landscape(np.linspace(0, 0.8, 12), np.linspace(0, 0.8, 4))
     assert landscape_hint(observation)
     optima, _ = optima_of_whole_landscape(observation, Steps(), 0)
@@ -303,10 +323,14 @@ def test_wires_of_former_populations_join_where_no_better_ones_are_found(
 ):
     far = Wire.at(whole, np.full(len(UNKNOWNS.names), 30.0))
     former = [Wire.at(whole, posterior(whole).mean)]
-    monkeypatch.setattr(Population, "_drawn", lambda self, rng: [far])
-    monkeypatch.setattr(Population, "_next_far", lambda self, rng: self.wires)
-    x, goal = Population(whole, Steps(), 0, (0,)).towards_optimum()
+    monkeypatch.setattr(Generations, "drawn", lambda self, rng: [far])
+    monkeypatch.setattr(Generations, "by_small_steps", lambda self, wires, rng: wires)
+    alone = Population(whole, Steps(), 0, (0,))
+    x, goal = alone.towards_optimum()
     np.testing.assert_array_equal(x, far.x)
     assert goal == "place"
-    _, goal = Population(whole, Steps(), 0, (1,), former).towards_optimum()
+    assert not alone.joined
+    together = Population(whole, Steps(), 0, (1,), former)
+    _, goal = together.towards_optimum()
     assert goal == "optimum"
+    assert together.joined

@@ -40,7 +40,7 @@ from disorder_landscape.inference.streams import Stream
 from disorder_landscape.inference.verdict import verdict
 from disorder_landscape.learning.model import TrainedModel, load_model
 
-SEARCH = 11
+SEARCH = 12
 """Number of the search's version. What an interrupted run of another one has found is of no use."""
 
 

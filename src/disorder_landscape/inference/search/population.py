@@ -13,69 +13,29 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
 
 from disorder_landscape.inference.optimum import Optimum, chi_square_excess, is_noise
-from disorder_landscape.inference.problem.observation import (
-    Observation,
-    overall_misfit,
-    squared_misfits,
-)
+from disorder_landscape.inference.problem.observation import Observation
 from disorder_landscape.inference.search.gauss_newton import ROUGHLY, Goal
-from disorder_landscape.inference.search.parts import (
-    Cut,
-    exchanged,
-    moved,
-    redrawn,
-    with_another_part,
-)
-from disorder_landscape.inference.search.small_steps import SmallSteps
+from disorder_landscape.inference.search.generations import Generations
 from disorder_landscape.inference.search.steps import Steps
-from disorder_landscape.inference.search.wires import Wire, best_of, objective_of, that_stay
-from disorder_landscape.inference.stages import SMALL_STEPS, within
+from disorder_landscape.inference.search.wires import Wire, best_of
 from disorder_landscape.inference.streams import Stream
 from disorder_landscape.model.parameters import FloatArray
 
 FEW, MORE = (24, 9, 7), (24, 9, 11)
 """Points of μ, B and bias, at most, of the data by which wires are compared: far from the true V,
 and near it."""
-DRAWS = 12, 300
-"""Draws of the prior that a population begins with, and small steps from each."""
-CHILDREN = (exchanged, 3), (moved, 5), (redrawn, 2)
-"""So many wires of a generation get another part of each kind. Steps go on with the best of each
-kind. (The best ones of all kinds would be those that have changed least: after 100 steps wires of
-which a part has moved to where it is right have up to nine times the χ² of before.)"""
-SMALL = 100, 300, 200
-"""Small steps of each of them; of the best ones then; and of these, when nothing is held any more.
-"""
-FAR = Cut(
-    redrawn=(1 / 30, 1 / 2),
-    taken=(1 / 15, 2 / 3),
-    seam=(1 / 60, 1 / 10),
-    held=0.5,
-)
-NEAR = Cut(
-    redrawn=(1 / 30, 1 / 5),
-    taken=(1 / 15, 2 / 3),
-    seam=(1 / 100, 1 / 100),
-    held=0.1,
-)
-NEAR_CHILDREN, GO_ON = ((exchanged, 6), (redrawn, 2)), 3
-"""The same where few Gauss–Newton steps follow at once; with so many of the best they go on."""
-IS_NEAR, ALSO_NEAR = 1.5, 3.0
-"""Gauss–Newton steps follow instead, when the mean square misfit of the best wire is less, in units
-of the noise's; and of which of the others."""
-APART_FAR, APART_NEAR = 0.25, 0.12
-"""Of wires whose V differs by less, in standard deviations of the prior, root mean square over the
-sites, only the best one stays."""
+IS_NEAR = 1.5
+"""Gauss–Newton steps follow when the mean square misfit of the best wire is less, in units of the
+noise's."""
 IDLE, STUCK = 2, (6, 10)
 """Generations end where so many have found no better wire: if the best one explains the data; and
 if it does not, far and near. (Far, populations that arrived have found better ones in each.)"""
-LEAVE = 300
-"""Small steps that leave an optimum, towards others near it."""
 
 
 @dataclass(eq=False)
@@ -100,12 +60,10 @@ class Population:
     seed: int
     name: tuple[int, ...]
     others: Sequence[Wire] = ()
-    reports: int = 0
-    """How often whom it tells has been told."""
-    spread: float = 0.0
-    """What it tells: the standard deviation of V among the wires in meV, as `Step.spread`."""
     wires: list[Wire] = field(default_factory=list)
     """The present generation."""
+    joined: bool = False
+    """Whether wires of former ones have, so that this is no attempt of its own."""
 
     @cached_property
     def few(self) -> Observation:
@@ -117,33 +75,40 @@ class Population:
         """The data by which they are near it."""
         return self.observation.on_few_points(*MORE)
 
+    @cached_property
+    def next(self) -> Generations:
+        """What follows the wires of a generation."""
+        return Generations(self.observation, self.few, self.more, self.steps, self.name[0])
+
     def towards_optimum(self) -> tuple[FloatArray, Goal]:
         """Return the unknowns (unknown,) of the best wire found, and what steps may reach there."""
-        self.wires = self._generation(0, self.few, self._drawn)
+        self.wires = self._generation(0, self.few, self.next.drawn)
         number = self._far_generations(1)
         if self._is_far and self.others:
             wires = [*self.wires, *(Wire.at(self.few, one.x) for one in self.others)]
-            self.wires = that_stay(self.observation.unknowns, wires, APART_FAR)
+            self.wires, self.joined = self.next.that_stay_far(wires), True
             number = self._far_generations(number)
         return (best_of(self.wires).x, "place") if self._is_far else self._near_generations(number)
 
     @property
     def _is_far(self) -> bool:
-        return self._misfit(best_of(self.wires)) >= IS_NEAR
+        return self.next.misfit(best_of(self.wires)) >= IS_NEAR
 
     def _far_generations(self, number: int) -> int:
         """Go on to the true V until no better wires are found; return the next one's number."""
         idle = 0
         while self._is_far and idle < STUCK[0]:
             best = best_of(self.wires)
-            self.wires = self._generation(number, self.few, self._next_far)
+            follow = partial(self.next.by_small_steps, self.wires)
+            self.wires = self._generation(number, self.few, follow)
             idle = _idle(idle, best, self.wires)
             number += 1
         return number
 
     def _near_generations(self, number: int) -> tuple[FloatArray, Goal]:
         """Do so near it; return unknowns (unknown,), and what steps may reach there."""
-        self.wires, idle = self._generation(number, self.more, self._come_near), 0
+        far, idle = self.wires, 0
+        self.wires = self._generation(number, self.more, lambda rng: self.next.come_near(far))
         while idle < STUCK[1]:
             best = best_of(self.wires)
             if idle == IDLE and is_noise(chi_square_excess(self.more, best.data)):
@@ -151,20 +116,15 @@ class Population:
                 if x is not None:
                     return x, "optimum"
             number += 1
-            follow = self._exchange_near if number % 2 else self._next_near
-            self.wires = self._generation(number, self.more, follow)
+            kind = self.next.near_by_exchange if number % 2 else self.next.near_by_small_steps
+            self.wires = self._generation(number, self.more, partial(kind, self.wires))
             idle = _idle(idle, best, self.wires)
         return best_of(self.wires).x, "place"
 
     def from_optimum(self, optimum: Optimum) -> tuple[FloatArray, Goal]:
         """Leave an optimum by small steps."""
-
-        def left(rng: np.random.Generator) -> list[Wire]:
-            prior = self.observation.unknowns.white_noise
-            small = SmallSteps(self.observation, prior, optimum.answer.mean)
-            return [self._after(small, LEAVE, rng)]
-
-        return self._generation(0, self.few, left)[0].x, "optimum"
+        follow = partial(self.next.left, optimum.answer.mean)
+        return self._generation(0, self.few, follow)[0].x, "optimum"
 
     def _generation(
         self,
@@ -182,76 +142,11 @@ class Population:
 
         found = self.steps.cache(self._name_of(number), calculate)
         V = self.observation.unknowns.potential(np.array(found["x"]))
-        self.spread = float(np.sqrt(V.var(axis=0).mean()))
+        self.next.spread = float(np.sqrt(V.var(axis=0).mean()))
         return made or [Wire.at(data, np.array(x)) for x in found["x"]]
 
     def _name_of(self, part: int | str) -> str:
         return ".".join(["population", *map(str, self.name), str(part)])
-
-    def _drawn(self, rng: np.random.Generator) -> list[Wire]:
-        """Return wires to which small steps lead from draws of the prior."""
-        count, steps = DRAWS
-        prior, wires = self.observation.unknowns.white_noise, []
-        for x in prior.draw_apart(rng, count):
-            small = SmallSteps(self.observation, prior, x)
-            wires.append(self._after(small, steps, rng))
-        return that_stay(self.observation.unknowns, wires, APART_FAR)
-
-    def _next_far(self, rng: np.random.Generator) -> list[Wire]:
-        """Let small steps follow other parts."""
-        wires = [*self.wires, *self._small_steps(rng)]
-        return that_stay(self.observation.unknowns, wires, APART_FAR)
-
-    def _small_steps(self, rng: np.random.Generator) -> list[Wire]:
-        """Return the wires to which small steps lead from other parts: the best of each kind."""
-        unknowns = self.observation.unknowns
-        first, held, free = SMALL
-        children = list[Wire]()
-        for kind, count in CHILDREN:
-            tried = []
-            for _ in range(count):
-                start = with_another_part(kind, unknowns, self.wires, FAR, rng)
-                small = SmallSteps(self.observation, start.prior, start.x)
-                tried.append((self._after(small, first, rng).objective, small))
-            _, best = min(tried, key=lambda one: one[0])
-            self._after(best, held, rng)
-            best.prior = unknowns.white_noise
-            children.append(self._after(best, free, rng))
-        return children
-
-    def _come_near(self, rng: np.random.Generator) -> list[Wire]:
-        """Let Gauss–Newton steps follow."""
-        best = best_of(self.wires)
-        near = [one for one in self.wires if one is best or self._misfit(one) < ALSO_NEAR]
-        return that_stay(
-            self.observation.unknowns, [self._ended(one.x, "better") for one in near], APART_NEAR
-        )
-
-    def _next_near(self, rng: np.random.Generator) -> list[Wire]:
-        """Let small steps and then Gauss–Newton steps follow other parts."""
-        children = [self._ended(one.x, "better") for one in self._small_steps(rng)]
-        return that_stay(self.observation.unknowns, [*self.wires, *children], APART_NEAR)
-
-    def _exchange_near(self, rng: np.random.Generator) -> list[Wire]:
-        """Let Gauss–Newton steps follow other parts."""
-        unknowns = self.observation.unknowns
-        starts = [
-            with_another_part(kind, unknowns, self.wires, NEAR, rng).x
-            for kind, count in NEAR_CHILDREN
-            for _ in range(count)
-        ]
-        tried = sorted([self._ended(x, "few") for x in starts], key=objective_of)
-        children = [self._ended(one.x, "better") for one in tried[:GO_ON]]
-        return that_stay(self.observation.unknowns, [*self.wires, *children], APART_NEAR)
-
-    def _after(self, small: SmallSteps, count: int, rng: np.random.Generator) -> Wire:
-        """Return the wire after so many more small steps."""
-        small.take(count, rng)
-        wire = Wire.at(self.few, small.x)
-        report = within(self.steps.progress, self.name[0], SMALL_STEPS)
-        report(self.reports, overall_misfit(self.few, wire.data), self.spread)
-        self.reports += 1
-        return wire
 
     def _with_all_data(self, x: FloatArray, number: int) -> FloatArray | None:
         """Return where steps with all data end, if these are explained there."""
@@ -259,14 +154,6 @@ class Population:
         end = self.steps.end(self.observation, x, self.name[0], name, goal="better").mean
         data = self.observation.simulate(end[None])[0]
         return end if is_noise(chi_square_excess(self.observation, data)) else None
-
-    def _misfit(self, wire: Wire) -> float:
-        """Return the mean square misfit far from the true V in units of the noise's."""
-        return float(squared_misfits(self.few, wire.data).mean())
-
-    def _ended(self, x: FloatArray, goal: Goal) -> Wire:
-        """Return the wire where Gauss–Newton steps end."""
-        return Wire.at(self.more, self.steps.end(self.more, x, self.name[0], goal=goal).mean)
 
 
 def _idle(before: int, best: Wire, wires: list[Wire]) -> int:

@@ -77,7 +77,7 @@ def optima_of_whole_landscape(
     some = in_fields.on_few_points(*MORE)
     optima = Optima(in_fields, steps, STARTS)
     highest, needed = highest_and_needed_mu(observation)
-    is_low, others = highest < needed, list[Wire]()
+    is_low, others, attempt = highest < needed, list[Wire](), 0
     for number in range(POPULATIONS if is_low else WAYS_DOWN):
         way: _Way | Population = (
             Population(in_fields, steps, seed, (number,), others)
@@ -87,12 +87,14 @@ def optima_of_whole_landscape(
         x, goal = way.towards_optimum()
         if isinstance(way, Population):
             others = way.wires
-        optima.start_at(x, number, goal)
+        if not (isinstance(way, Population) and way.joined):
+            attempt = number
+        optima.start_at(x, attempt, goal)
         until = optima.starts + STARTS[1] - 1
         while optima.fits and not optima.is_settled and optima.starts < until:
             again = replace(way, name=(number, optima.starts))
             x, goal = again.from_optimum(best(optima.found))
-            optima.start_at(x, number, goal)
+            optima.start_at(x, attempt, goal)
         if optima.fits:
             break
     return optima.of(observation), number + 1
