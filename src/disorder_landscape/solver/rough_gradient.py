@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from disorder_landscape.model.parameters import FloatArray, Nanowire
-from disorder_landscape.solver import compiled_gradients
-from disorder_landscape.solver.gradients import Gradient, energies_of_leads, joined
+from disorder_landscape.solver import compiled_gradients, routes
+from disorder_landscape.solver.gradients import Gradient, energies_of_leads
 
 
 def roughly_by_potential(
@@ -18,15 +22,14 @@ def roughly_by_potential(
     within 2 %. Their errors are not estimated, and stand as zero. Where a set has no closed form
     they are infinite, and the derivatives NaN.
     """
-    if np.isfinite(wire.critical_field):
-        each = [
-            roughly_by_potential(wire.in_field(float(b)), mu, np.array([b]), bias, temperature)
-            for b in B
-        ]
-        return joined(each, axis=1)
-    energies = energies_of_leads(bias, temperature)
-    unused = np.zeros((B.size, energies.size, 2, 2, 2, 2, 2), complex)  # what the leads' slopes are
-    raw = compiled_gradients.thermal_gradient(
-        wire, mu, B, bias, temperature, energies, unused, roughly=True
-    )
-    return Gradient(raw.conductance, {"V": raw.by_V}, raw.error, raw.energies, raw.difference)
+    at = energies_of_leads(bias, temperature)
+
+    def solve(some: Sequence[Nanowire], fields: FloatArray) -> tuple[NDArray[Any], ...]:
+        unused = np.zeros((fields.size, at.size, 2, 2, 2, 2, 2), complex)  # the leads' slopes
+        raw = compiled_gradients.thermal_gradient(
+            some[0], mu, fields, bias, temperature, at, unused, roughly=True
+        )
+        return raw.conductance, raw.by_V, raw.error, raw.energies, raw.difference
+
+    G, by_V, error, energies, difference = routes.in_fields(solve, [wire], B, axis=1)
+    return Gradient(G, {"V": by_V}, error, energies, difference)
