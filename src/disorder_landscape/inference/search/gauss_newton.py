@@ -38,11 +38,13 @@ class Accuracy(NamedTuple):
     """Whether rough ones do."""
 
 
-AT_OPTIMUM, NEAR_ONE, IN_SMALL_STEPS = Accuracy(1.0), Accuracy(30.0), Accuracy(30.0, roughly=True)
-"""Where steps go to an optimum itself, where they go near one, and where they are small. (The
-estimated errors are large: of nineteen sets of wires of 300 sites that had to be within 0.003 and
-were not, derivatives were off by 0.0005 on average and 0.003 at most. Differences in these sets
-take three quarters of the time.)"""
+AT_OPTIMUM, NEAR_ONE = Accuracy(1.0), Accuracy(30.0)
+"""Where steps go to an optimum itself, and where they go near one. (The estimated errors are large:
+of nineteen sets of wires of 300 sites that had to be within 0.003 and were not, derivatives were
+off by 0.0005 on average and 0.003 at most. Differences in these sets take three quarters of the
+time.)"""
+IN_SMALL_STEPS = NEAR_ONE._replace(roughly=True)
+"""Where they are small."""
 STEPS = 30
 """At most, …"""
 FEW_STEPS = 3
