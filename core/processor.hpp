@@ -37,10 +37,10 @@ inline Features features() {
 }
 #endif
 
-// From the slowest to the fastest; the names are those of CMakeLists.txt.
+// From the slowest to the fastest; the names are those of CMakeLists.txt, which says if there is one alone.
 inline std::vector<std::string> supported_variants() {
     std::vector<std::string> variants{"baseline"};
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(CORE_ALONE)
     const Features found = features();
     if (found.avx2) {
         variants.emplace_back("avx2");
