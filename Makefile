@@ -108,17 +108,12 @@ test: $(READY) ## run the tests
 	$(VENV_PYTHON) -m pytest -n 2 --dist worksteal
 
 # Node knows nothing of sanitizers, how long a first result takes says nothing with them, and they reserve
-# more memory than any limit on it.  The other five do next to nothing but the same simple conductances, over
-# and over, for integrals by brute force: five sixths of the time of all.
-sanitize: $(READY) ## run all fast tests of the core with bad accesses and overflows caught (gcc's g++)
+# more memory than any limit on it.  Integrals by brute force are the same conductances over and over.
+sanitize: $(READY) ## run the fast tests of the core with bad accesses and overflows caught (gcc's g++)
 	@sh scripts/sanitize.sh -n 2 --dist worksteal tests/solver tests/observables --ignore=tests/solver/test_wasm.py \
+	  -m 'not slow and not gpu and not brute_force' \
 	  --deselect tests/solver/test_processes.py::test_the_first_results_of_a_process_take_no_time \
-	  --deselect tests/solver/test_processes.py::test_where_there_are_fewer_threads_than_asked_for_these_do_all \
-	  --deselect tests/solver/test_quadrature.py::test_it_is_continuous_where_the_window_passes_the_gap \
-	  --deselect tests/observables/test_dissipation.py::test_the_average_is_the_integral \
-	  --deselect tests/observables/test_finite_temperature.py::test_the_estimate_bounds_the_error \
-	  --deselect tests/observables/test_hot.py::test_neither_do_cold_wires_with_biases_next_to_the_gap \
-	  --deselect tests/observables/test_thermal_gradient.py::test_each_derivative_is_that_of_the_quadrature
+	  --deselect tests/solver/test_processes.py::test_where_there_are_fewer_threads_than_asked_for_these_do_all
 
 wasm: $(READY) ## compile the core to WebAssembly, for a page without a server: build/wasm/nanowire.wasm
 	@sh scripts/wasm.sh build/wasm/nanowire.wasm

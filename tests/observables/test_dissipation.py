@@ -35,6 +35,7 @@ def test_three_routes_agree(seed, mu, B, omega, dissipation, parent):
     assert_allclose(arithmetics.tilted_conductance(*at, 0.0), G, atol=1e-8, rtol=0)
 
 
+@pytest.mark.brute_force
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("temperature", [0.02, 0.05, 0.2, 0.3])
 @pytest.mark.parametrize("dissipation", [1e-7, 1e-4, 1e-3, 0.02])

@@ -114,6 +114,7 @@ def asked(monkeypatch):
     return asked
 
 
+@pytest.mark.brute_force
 @pytest.mark.parametrize("temperature", [0.02, 0.05])
 @pytest.mark.parametrize(
     "material",

@@ -101,12 +101,14 @@ def assert_right(wire, mu, B, temperature, names, share):
         assert_allclose(ours, slope, rtol=0, atol=smallest + 3 * error)
 
 
+@pytest.mark.brute_force
 @pytest.mark.parametrize("name", sorted(set(STEPS) - {"dissipation"}))
 def test_each_derivative_is_that_of_the_quadrature(name):
     wire = replace(random_wire(3, sites=300), critical_field=2.0)
     assert_right(wire, 0.3, 0.45, 0.05, [name], share=1e-3)
 
 
+@pytest.mark.brute_force
 @pytest.mark.parametrize("name", STEPS)
 def test_so_it_is_where_levels_are_broadened(name):
     wire = replace(random_wire(3, sites=150), critical_field=2.0, dissipation=0.001)
@@ -245,6 +247,7 @@ def test_wires_that_leak_alone_have_differences():
     assert at_rest.dG_LL_ddissipation.item() == pytest.approx((G[1] - G[0]) / 1e-5, rel=1e-2)
 
 
+@pytest.mark.brute_force
 @pytest.mark.parametrize(
     ("name", "temperature", "dissipation"),
     [(name, 0.3, 0.0) for name in sorted(set(STEPS) - {"dissipation"})]
@@ -378,6 +381,7 @@ def test_what_samples_next_to_the_gap_miss_is_added(seed, name):
     assert_allclose(slopes_of(found, name), slope, rtol=0, atol=7e-5 * largest)
 
 
+@pytest.mark.brute_force
 @pytest.mark.parametrize(("seed", "temperature"), [(4, 1.0), (4, 0.5), (5, 0.3)])
 @pytest.mark.parametrize("name", ["delta0", "g", "B"])
 def test_levels_of_one_spin_next_to_the_gap_may_move_much(seed, temperature, name):

@@ -55,6 +55,7 @@ def test_the_energy_grid_converges_to_it():
     assert_allclose(np.einsum("svk,ksg->vg", weights, G0), G, atol=2e-3)
 
 
+@pytest.mark.brute_force
 @pytest.mark.parametrize(("seed", "mu", "B"), POINTS)
 def test_it_is_continuous_where_the_window_passes_the_gap(seed, mu, B):
     """The gap enters the window at 51 mK: G(T) from 50 to 70 mK has no kink there."""
