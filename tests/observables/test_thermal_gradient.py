@@ -354,6 +354,7 @@ def drawn_case(seed, broadened=False, hot=False):
     return wire, mu, B, T, along
 
 
+@pytest.mark.brute_force
 @pytest.mark.parametrize("share_of_gap", [0.93, 0.96])
 @pytest.mark.parametrize("seed", [109, 112, 139])
 def test_the_thermal_window_may_end_next_to_the_gap(seed, share_of_gap):
@@ -363,12 +364,14 @@ def test_the_thermal_window_may_end_next_to_the_gap(seed, share_of_gap):
     assert_right(wire, mu, B, kT / BOLTZMANN, ["mu", "gamma"], share=2e-3)
 
 
+@pytest.mark.brute_force
 def test_a_pole_may_be_far_wider_than_the_model_has_it():
     """At zero energy, between wider ones: left out for its width, it was missed."""
     wire, mu, B, T, _ = drawn_case(322)
     assert_right(wire, mu, B, T, ["mu", "gamma", "V"], share=1e-3)
 
 
+@pytest.mark.brute_force
 @pytest.mark.parametrize(("seed", "name"), [(11, "gamma"), (24, "gamma"), (15, "delta0")])
 def test_what_samples_next_to_the_gap_miss_is_added(seed, name):
     """There all levels move alike with these parameters; samples alone are 1.5 to 2.4e-4 off."""
