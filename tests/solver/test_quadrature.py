@@ -30,6 +30,7 @@ def test_the_rules_are_those_of_gauss_and_kronrod():
     assert_allclose(powers, 2 / np.arange(1, 24, 2), atol=1e-15)
 
 
+@pytest.mark.brute_force
 @pytest.mark.parametrize("temperature", [0.02, 0.05, 0.1, 0.3])
 @pytest.mark.parametrize(("seed", "mu", "B"), POINTS)
 def test_the_estimate_bounds_the_error(seed, mu, B, temperature):
